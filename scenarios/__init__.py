@@ -1,0 +1,35 @@
+"""The world: arm, obstacles, scenario files, generator families and collision; knows no planner."""
+
+from scenarios.arm import ContinuumArm
+from scenarios.collision import clearance, clearances, is_motion_valid, is_state_valid
+from scenarios.errors import ScenarioError
+from scenarios.families import FAMILIES, generate, start_is_free
+from scenarios.files import load_scenarios, save_scenarios
+from scenarios.motion import Orbit, Track
+from scenarios.obstacle import Obstacle
+from scenarios.scenario import STEP_S, Scenario
+from scenarios.spec import SpecError
+from scenarios.world import SampledWorld, make_world, sample_world
+
+__all__ = [
+    "FAMILIES",
+    "STEP_S",
+    "ContinuumArm",
+    "Obstacle",
+    "Orbit",
+    "SampledWorld",
+    "Scenario",
+    "ScenarioError",
+    "SpecError",
+    "Track",
+    "clearance",
+    "clearances",
+    "generate",
+    "is_motion_valid",
+    "is_state_valid",
+    "load_scenarios",
+    "make_world",
+    "sample_world",
+    "save_scenarios",
+    "start_is_free",
+]

@@ -1,0 +1,90 @@
+"""Families of scenarios and the generator that draws from them.
+
+A new family is one subclass of ``Family`` and one line in ``FAMILIES``.
+"""
+
+import hashlib
+
+import numpy as np
+
+from scenarios.arm import ContinuumArm
+from scenarios.collision import is_motion_valid
+from scenarios.errors import ScenarioError
+from scenarios.families.base import Family
+from scenarios.families.orbit import OrbitFamily
+from scenarios.scenario import Scenario
+from scenarios.spec import known_name, parse_settings, parse_spec
+from scenarios.world import sample_world
+
+FAMILIES: dict[str, type[Family]] = {"orbit": OrbitFamily}
+
+
+def parse_family(spec: str) -> tuple[str, Family]:
+    """Name and settings of ``orbit`` or ``orbit[max_speed_m_s=0.03]``.
+
+    Raises:
+        SpecError: Unknown family or setting; lists the known ones.
+    """
+    name, values = parse_spec(spec)
+    return name, parse_settings(name, FAMILIES[known_name("family", name, FAMILIES)], values)
+
+
+def generate(
+    family: str, n_obstacles: int, trials: int, seed: int, arm: ContinuumArm | None = None
+) -> list[Scenario]:
+    """Draw scenarios; number k depends on family, obstacles, seed and k alone, never on what was drawn before.
+
+    A draw is rejected when the start is hit while the obstacles are observed, and for nothing else: a generator must
+    not remove hard cases.
+
+    Args:
+        family: Family spec, such as ``orbit``.
+        n_obstacles: Number of obstacles in each scenario.
+        trials: Number of scenarios.
+        seed: Seed of the experiment.
+        arm: The arm; the default one when None.
+
+    Raises:
+        SpecError: Unknown family or setting.
+        ScenarioError: Numbers out of range, or settings from which no scenario can be drawn.
+    """
+    name, settings = parse_family(family)
+    if not 0 <= n_obstacles <= 1000:
+        raise ScenarioError(f"obstacles: found {n_obstacles}, allowed 0 to 1000")
+    if not 1 <= trials <= 100_000:
+        raise ScenarioError(f"trials: found {trials}, allowed 1 to 100000")
+    if not 0 <= seed < 2**63:
+        raise ScenarioError(f"seed: found {seed}, allowed 0 to 2^63 - 1")
+    return [_draw(name, settings, n_obstacles, k, seed, arm or ContinuumArm()) for k in range(trials)]
+
+
+def _draw(name: str, settings: Family, n_obstacles: int, k: int, seed: int, arm: ContinuumArm) -> Scenario:
+    digest = hashlib.sha256(f"{name}/{n_obstacles}/{seed}/{k}".encode()).digest()
+    rng = np.random.default_rng(int.from_bytes(digest[:8], "big"))
+    for _ in range(1000):
+        try:
+            problem = settings.draw(rng, arm, n_obstacles)
+        except ValueError as error:
+            raise ScenarioError(f"{name}: {error}") from None
+        scenario = Scenario(
+            id=f"{name}-n{n_obstacles}-s{seed}-{k:04d}",
+            family=name,
+            seed=seed,
+            parameters={"n_obstacles": n_obstacles, **settings.model_dump()},
+            arm=arm,
+            start_rad=tuple(problem.start.tolist()),
+            goal_m=tuple(problem.goal.tolist()),
+            obstacles=problem.obstacles,
+        )
+        if start_is_free(scenario):
+            return scenario
+    raise ScenarioError(
+        f"{name}: every one of 1000 draws hits the start, allowed settings that leave it free"
+    )
+
+
+def start_is_free(scenario: Scenario) -> bool:
+    """Whether nothing touches the arm at its start at any instant of the observation, [-observation_s, 0]."""
+    world = sample_world(scenario.obstacles, -scenario.observation_s, 0.0, 0.05)
+    q = scenario.start
+    return is_motion_valid(scenario.arm, q, -scenario.observation_s, q, 0.0, world)

@@ -1,0 +1,161 @@
+"""Constant-curvature kinematics of a chain of inextensible sections, in bending vectors.
+
+A section of length L with bending vector (u, v) = phi (cos theta, sin theta) is a circular arc of radius L / phi that
+starts along its base z axis and bends towards (u, v). Its end frame is Rz(theta) Ry(phi) Rz(-theta) in its base frame:
+Arachchige and Godage, RoboSoft 2022, eq. (3), with the section's own length as arc parameter.
+"""
+
+import math
+
+import numpy as np
+
+from scenarios.kernels.jit import kernel
+
+# Below this bend the arc is computed as if bent by it: the tip moves by less than L * 1e-6 / 2, and no branch for the
+# straight section is needed anywhere.
+MIN_BEND_RAD = 1e-6
+
+# One row of ``arcs``, all that a distance to the arc needs: base point 0:3, unit bending direction d 3:6, unit normal of
+# the arc's plane e 6:9, base tangent z 9:12 (d, e, z is a right-handed frame), end point 12:15, radius 15, sine and
+# cosine of the bend 16, 17.
+ARC_SIZE = 18
+
+
+@kernel
+def section_arcs(q, section_length, arcs):
+    """Lay out the backbone's arcs in the base frame.
+
+    Args:
+        q: Bending vectors (u1, v1, u2, v2, ...), shape (2n,), [rad].
+        section_length: Length of each section [m].
+        arcs: Output, shape (n, ARC_SIZE).
+    """
+    px, py, pz = 0.0, 0.0, 0.0
+    xx, xy, xz = 1.0, 0.0, 0.0
+    yx, yy, yz = 0.0, 1.0, 0.0
+    zx, zy, zz = 0.0, 0.0, 1.0
+    for i in range(arcs.shape[0]):
+        u, v = q[2 * i], q[2 * i + 1]
+        bend = math.sqrt(u * u + v * v)
+        if bend < MIN_BEND_RAD:
+            bend = MIN_BEND_RAD
+            c, s = 1.0, 0.0
+        else:
+            c, s = u / bend, v / bend
+        radius = section_length / bend
+        sin, cos = math.sin(bend), math.cos(bend)
+        dx, dy, dz = c * xx + s * yx, c * xy + s * yy, c * xz + s * yz
+        ex, ey, ez = c * yx - s * xx, c * yy - s * xy, c * yz - s * xz
+        a, b = radius * (1.0 - cos), radius * sin
+        row = arcs[i]
+        row[0], row[1], row[2] = px, py, pz
+        row[3], row[4], row[5] = dx, dy, dz
+        row[6], row[7], row[8] = ex, ey, ez
+        row[9], row[10], row[11] = zx, zy, zz
+        px, py, pz = px + a * dx + b * zx, py + a * dy + b * zy, pz + a * dz + b * zz
+        row[12], row[13], row[14] = px, py, pz
+        row[15], row[16], row[17] = radius, sin, cos
+        # The end frame: the base frame turned by the bend about the arc plane's normal, which carries no twist.
+        tx, ty, tz = cos * dx - sin * zx, cos * dy - sin * zy, cos * dz - sin * zz
+        zx, zy, zz = cos * zx + sin * dx, cos * zy + sin * dy, cos * zz + sin * dz
+        xx, xy, xz = c * tx - s * ex, c * ty - s * ey, c * tz - s * ez
+        yx, yy, yz = s * tx + c * ex, s * ty + c * ey, s * tz + c * ez
+
+
+@kernel
+def point_on_arc(arc, fraction_sin, fraction_cos, out):
+    """Write the point of ``arc`` whose bend from the base has the given sine and cosine into ``out`` (3,), [m]."""
+    a, b = arc[15] * (1.0 - fraction_cos), arc[15] * fraction_sin
+    for k in range(3):
+        out[k] = arc[k] + a * arc[3 + k] + b * arc[9 + k]
+
+
+@kernel
+def tips(configurations, section_length):
+    """Tip position of each configuration: (N, 2n) [rad] -> (N, 3) [m]."""
+    n = configurations.shape[1] // 2
+    arcs = np.empty((n, ARC_SIZE))
+    out = np.empty((configurations.shape[0], 3))
+    for i in range(configurations.shape[0]):
+        section_arcs(configurations[i], section_length, arcs)
+        out[i, 0], out[i, 1], out[i, 2] = arcs[n - 1, 12], arcs[n - 1, 13], arcs[n - 1, 14]
+    return out
+
+
+@kernel
+def backbone(q, section_length, points_per_section):
+    """Backbone points at equal arc length: (n * points_per_section + 1, 3) [m], the base first."""
+    n = q.shape[0] // 2
+    arcs = np.empty((n, ARC_SIZE))
+    section_arcs(q, section_length, arcs)
+    out = np.zeros((n * points_per_section + 1, 3))
+    for i in range(n):
+        bend = section_length / arcs[i, 15]
+        for k in range(1, points_per_section + 1):
+            angle = bend * k / points_per_section
+            point_on_arc(arcs[i], math.sin(angle), math.cos(angle), out[i * points_per_section + k])
+    return out
+
+
+@kernel
+def position_jacobian(q, section_length, arc_length, jacobian):
+    """Derivative of the backbone point at ``arc_length`` with respect to the bending vectors.
+
+    Args:
+        q: Bending vectors, shape (2n,), [rad].
+        section_length: Length of each section [m].
+        arc_length: Distance along the backbone from the base, in [0, n * section_length] [m].
+        jacobian: Output, shape (3, 2n), [m/rad].
+
+    Returns:
+        The point (x, y, z) [m].
+
+    A section's end turns by the rotation vector w = (-v, u, 0) in its base frame, so dw maps to an angular velocity
+    through the left Jacobian of SO(3); what lies beyond the section is carried along rigidly.
+    """
+    n = q.shape[0] // 2
+    arcs = np.empty((n, ARC_SIZE))
+    section_arcs(q, section_length, arcs)
+    last = min(int(arc_length / section_length), n - 1)
+    inside = arc_length - last * section_length
+    angle = inside / arcs[last, 15]
+    point = np.empty(3)
+    point_on_arc(arcs[last], math.sin(angle), math.cos(angle), point)
+    jacobian[:] = 0.0
+    for i in range(last + 1):
+        share = 1.0 if i < last else inside / section_length
+        if share > 0.0:
+            _section_columns(q[2 * i], q[2 * i + 1], arcs[i], section_length, share, point, i, jacobian)
+    return point[0], point[1], point[2]
+
+
+@kernel
+def _section_columns(u, v, arc, section_length, share, point, i, jacobian):
+    """Write the two columns of section ``i``, cut at ``share`` of its length: how ``point`` moves with (u, v)."""
+    bend = math.sqrt(u * u + v * v)
+    c, s = (u / bend, v / bend) if bend >= MIN_BEND_RAD else (1.0, 0.0)
+    phi, length = max(bend, MIN_BEND_RAD) * share, section_length * share
+    # The cut section ends at length * (f d + g z); f, g and their derivatives by series where they cancel.
+    if phi < 1e-3:
+        f_by_phi, g = 0.5 - phi * phi / 24.0, 1.0 - phi * phi / 6.0
+        df, dg = 0.5 - phi * phi / 8.0, -phi / 3.0
+    else:
+        f_by_phi, g = (1.0 - math.cos(phi)) / (phi * phi), math.sin(phi) / phi
+        df, dg = g - f_by_phi, (math.cos(phi) - g) / phi
+    f = f_by_phi * phi
+    lever_x = point[0] - arc[0] - length * (f * arc[3] + g * arc[9])
+    lever_y = point[1] - arc[1] - length * (f * arc[4] + g * arc[10])
+    lever_z = point[2] - arc[2] - length * (f * arc[5] + g * arc[11])
+    for k in range(2):
+        bending = (c if k == 0 else s) * share  # d(phi)
+        turning = (-s if k == 0 else c) * share  # phi d(theta)
+        along, lift, side = length * df * bending, length * dg * bending, length * f_by_phi * turning
+        # Angular velocity: the left Jacobian of SO(3) applied to dw = bending * e - turning * d.
+        on_e, on_d, on_z = bending, -g * turning, f * turning
+        wx = on_e * arc[6] + on_d * arc[3] + on_z * arc[9]
+        wy = on_e * arc[7] + on_d * arc[4] + on_z * arc[10]
+        wz = on_e * arc[8] + on_d * arc[5] + on_z * arc[11]
+        column = 2 * i + k
+        jacobian[0, column] = along * arc[3] + lift * arc[9] + side * arc[6] + wy * lever_z - wz * lever_y
+        jacobian[1, column] = along * arc[4] + lift * arc[10] + side * arc[7] + wz * lever_x - wx * lever_z
+        jacobian[2, column] = along * arc[5] + lift * arc[11] + side * arc[8] + wx * lever_y - wy * lever_x

@@ -1,0 +1,75 @@
+"""The one notation for a thing with settings: ``name`` or ``name[key=value,...]``."""
+
+import re
+from collections.abc import Iterable
+from typing import TypeVar
+
+from pydantic import BaseModel, ValidationError
+
+_Settings = TypeVar("_Settings", bound=BaseModel)
+_SPEC = re.compile(r"\s*([A-Za-z0-9_.:-]+)\s*(?:\[([^\[\]]*)\])?\s*")
+
+
+class SpecError(ValueError):
+    """A spec cannot be read or names something unknown; the message is one line and lists what is known."""
+
+
+def split_specs(text: str) -> list[str]:
+    """Split a comma-separated list of specs; commas inside brackets belong to their spec."""
+    parts = [part.strip() for part in re.split(r",(?![^\[]*\])", text)]
+    if not all(parts):
+        raise SpecError(
+            f"found an empty entry in {text!r}, allowed a comma-separated list of name[key=value,...]"
+        )
+    return parts
+
+
+def parse_spec(text: str) -> tuple[str, dict[str, str]]:
+    """Split ``name[key=value,...]`` into its name and its settings as text.
+
+    Raises:
+        SpecError: The text is not of that form, or a key stands twice.
+    """
+    match = _SPEC.fullmatch(text)
+    if match is None:
+        raise SpecError(f"found {text!r}, allowed name or name[key=value,...]")
+    name, inside = match.group(1), match.group(2)
+    settings: dict[str, str] = {}
+    for item in inside.split(",") if inside and inside.strip() else []:
+        key, equals, value = (part.strip() for part in item.partition("="))
+        if not (key and equals and value):
+            raise SpecError(f"{name}: found {item.strip()!r}, allowed key=value")
+        if key in settings:
+            raise SpecError(f"{name}: found {key!r} twice, allowed once")
+        settings[key] = value
+    return name, settings
+
+
+def known_name(kind: str, name: str, known: Iterable[str]) -> str:
+    """Return ``name`` if it is known.
+
+    Raises:
+        SpecError: It is not; the message lists the known ones.
+    """
+    names = list(known)
+    if name not in names:
+        raise SpecError(f"{kind}: found {name!r}, allowed {', '.join(names)}")
+    return name
+
+
+def parse_settings(name: str, model: type[_Settings], values: dict[str, str]) -> _Settings:
+    """Build a settings model from text values.
+
+    Raises:
+        SpecError: An unknown key or a value out of range; the message lists the known keys or the allowed values.
+    """
+    unknown = [key for key in values if key not in model.model_fields]
+    if unknown:
+        known = ", ".join(model.model_fields) or "none"
+        raise SpecError(f"{name}: found setting {unknown[0]!r}, allowed {known}")
+    try:
+        return model.model_validate(values)
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(str(part) for part in first["loc"]) or "settings"
+        raise SpecError(f"{name}[{where}]: found {first['input']!r}, allowed: {first['msg']}") from None

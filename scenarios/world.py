@@ -1,0 +1,49 @@
+"""Obstacles as the kernels see them: sampled in time, of true or of predicted motion alike."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from scenarios.motion import FloatArray
+from scenarios.obstacle import Obstacle
+
+
+class SampledWorld(NamedTuple):
+    """Spheres sampled at ``start_s + k * step_s``; linear in time between samples, at rest outside them."""
+
+    start_s: float
+    step_s: float
+    centers_m: FloatArray
+    """Centres, shape (T, m, 3) with T >= 2, [m]."""
+    radii_m: FloatArray
+    """Radii, shape (T, m), [m]; they may grow with time where a prediction becomes less certain."""
+    speed_m_s: float
+    """Fastest approach of any surface: the centre's speed plus the radius's growth."""
+
+
+def make_world(start_s: float, step_s: float, centers_m: FloatArray, radii_m: FloatArray) -> SampledWorld:
+    """Assemble a world from samples (T, m, 3) and radii (T, m) or (m,), deriving its speed.
+
+    Raises:
+        ValueError: Fewer than two samples, shapes that do not match, or a number that is not finite.
+    """
+    centers = np.ascontiguousarray(centers_m, dtype=np.float64)
+    if centers.ndim != 3 or centers.shape[0] < 2 or centers.shape[2] != 3:
+        raise ValueError(f"centers_m: found shape {centers.shape}, allowed (T >= 2, m, 3)")
+    radii = np.ascontiguousarray(np.broadcast_to(np.asarray(radii_m, dtype=np.float64), centers.shape[:2]))
+    if not (np.isfinite(centers).all() and np.isfinite(radii).all() and step_s > 0):
+        raise ValueError("world: samples must be finite and step_s positive")
+    approach = np.linalg.norm(np.diff(centers, axis=0), axis=2) + np.maximum(np.diff(radii, axis=0), 0.0)
+    speed = float(approach.max(initial=0.0)) / step_s
+    return SampledWorld(float(start_s), float(step_s), centers, radii, speed)
+
+
+def sample_world(obstacles: Sequence[Obstacle], start_s: float, end_s: float, step_s: float) -> SampledWorld:
+    """Sample the true motion of ``obstacles`` over [start_s, end_s], every ``step_s``."""
+    count = max(2, int(np.ceil((end_s - start_s) / step_s - 1e-9)) + 1)
+    times = start_s + step_s * np.arange(count)
+    centers = np.empty((count, len(obstacles), 3))
+    for j, obstacle in enumerate(obstacles):
+        centers[:, j] = obstacle.position(times)
+    return make_world(start_s, step_s, centers, np.array([o.radius_m for o in obstacles]))

@@ -1,0 +1,1 @@
+"""The comparison: experiments, trials, verdicts, tables and the command line."""
