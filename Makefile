@@ -1,0 +1,43 @@
+# `make run` and `make test` need only make and Python >= 3.11; everything else goes into $(VENV).
+#   make run PYTHON=python3.12        another interpreter
+#   make run VENV=/some/where         another virtual environment
+
+PYTHON ?= python3
+VENV ?= .venv
+BIN := $(VENV)/bin
+INSTALLED := $(VENV)/.installed
+
+.PHONY: run test lint lock clean
+
+run: $(INSTALLED)
+	$(BIN)/suite run --planners temporal,rrt,pf
+
+test: $(INSTALLED)
+	$(BIN)/python -m pytest
+
+lint: $(INSTALLED)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+# Made again only when what is to be installed has changed.
+$(INSTALLED): requirements.lock pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || \
+	    { echo "error: $(PYTHON) is missing or older than Python 3.11; try: make PYTHON=/path/to/a/newer/python3" >&2; exit 1; }
+	$(PYTHON) -m venv --clear $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --requirement requirements.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --editable .
+	@touch $@
+
+# Pins from pyproject.toml for every Python >= 3.11; needs uv. The second file is the first without the heavy
+# extras (report, cluster), at the same versions.
+UV_COMPILE := uv pip compile pyproject.toml --quiet --universal --python-version 3.11 --generate-hashes \
+    --no-annotate --custom-compile-command "make lock" --upgrade
+
+lock:
+	$(UV_COMPILE) --all-extras --output-file requirements-all.lock
+	$(UV_COMPILE) --extra test --extra dev --constraint requirements-all.lock --output-file requirements.lock
+
+clean:
+	rm -rf $(VENV)

@@ -1,0 +1,1 @@
+"""The methods: prediction, the space-time problem of OMPL, and every planner."""
