@@ -1,1 +1,20 @@
-"""The methods: prediction, the space-time problem of OMPL, and every planner."""
+"""The methods: prediction, the OMPL space-time problem, and every planner."""
+
+from planners.prediction import PREDICTORS, Observation, build_predictor
+from planners.registry import ALIASES, PLANNERS, PlannerEntry, PlannerSpec, parse_planner, split_specs
+from planners.session import Plan, Session, warm_up
+
+__all__ = [
+    "ALIASES",
+    "PLANNERS",
+    "PREDICTORS",
+    "Observation",
+    "Plan",
+    "PlannerEntry",
+    "PlannerSpec",
+    "Session",
+    "build_predictor",
+    "parse_planner",
+    "split_specs",
+    "warm_up",
+]

@@ -9,12 +9,11 @@ import hashlib
 import os
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import numba
 import platformdirs
 
-_Function = TypeVar("_Function", bound=Callable[..., Any])
 _ROOT = Path(__file__).resolve().parents[2]
 _KERNEL_SOURCES = ("scenarios/kernels/*.py", "planners/**/_kernels.py", "suite/**/_kernels.py")
 
@@ -38,10 +37,10 @@ def kernel_hash() -> str:
 numba.config.CACHE_DIR = str(cache_folder() / "kernels" / kernel_hash())
 
 
-def kernel(function: _Function) -> _Function:
+def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     """Compile ``function`` in nopython mode, cached on disk.
 
     No ``fastmath``: it breaks NaN checks and lets verdicts differ between machines.
     """
-    compiled: _Function = numba.njit(cache=True, fastmath=False, error_model="numpy")(function)
+    compiled: Callable[..., Any] = numba.njit(cache=True, fastmath=False, error_model="numpy")(function)
     return compiled

@@ -1,0 +1,113 @@
+"""The compiled half of the shared checker and motion validator."""
+
+import math
+
+import numpy as np
+
+from scenarios.kernels.clearance import motion_clear_until, section_clearances
+from scenarios.kernels.jit import kernel
+from scenarios.kernels.kinematics import ARC_SIZE, section_arcs
+
+# Tip speed is looked at on pieces of a motion that bend by no more than this in all sections together: over such a
+# piece the tip's speed varies by less than 2 % (second derivative of the tip, at most 0.45 m per rad^2 bent).
+PIECE_RAD = 0.05
+
+
+@kernel
+def clearance(q, t, section_length, arm_radius, world):
+    """Signed distance [m] of the body at ``q`` (2n,) [rad] to the nearest obstacle at ``t`` [s]."""
+    n = q.shape[0] // 2
+    return section_clearances(q, t, section_length, arm_radius, world, np.empty((n, ARC_SIZE)), np.empty(n))
+
+
+@kernel
+def tip_distance(q, section_length, point):
+    """Distance [m] of the tip from ``point`` (3,) [m]."""
+    n = q.shape[0] // 2
+    arcs = np.empty((n, ARC_SIZE))
+    section_arcs(q, section_length, arcs)
+    tip = arcs[n - 1]
+    return math.sqrt((tip[12] - point[0]) ** 2 + (tip[13] - point[1]) ** 2 + (tip[14] - point[2]) ** 2)
+
+
+@kernel
+def fastest_tip(q0, q1, section_length):
+    """Largest tip displacement per share of the motion q0 -> q1, linear in bending vectors [m]."""
+    n = q0.shape[0] // 2
+    change = 0.0
+    for i in range(n):
+        change += math.hypot(q1[2 * i] - q0[2 * i], q1[2 * i + 1] - q0[2 * i + 1])
+    pieces = max(1, math.ceil(change / PIECE_RAD))
+    arcs, q = np.empty((n, ARC_SIZE)), np.empty(2 * n)
+    fastest, x, y, z = 0.0, 0.0, 0.0, 0.0
+    for k in range(pieces + 1):
+        for i in range(2 * n):
+            q[i] = q0[i] + (q1[i] - q0[i]) * k / pieces
+        section_arcs(q, section_length, arcs)
+        tip = arcs[n - 1]
+        if k > 0:
+            moved = math.sqrt((tip[12] - x) ** 2 + (tip[13] - y) ** 2 + (tip[14] - z) ** 2)
+            fastest = max(fastest, moved * pieces)
+        x, y, z = tip[12], tip[13], tip[14]
+    return fastest
+
+
+@kernel
+def largest_bend_change(q0, q1):
+    """Largest change of a section's bending vector [rad]."""
+    largest = 0.0
+    for i in range(q0.shape[0] // 2):
+        largest = max(largest, math.hypot(q1[2 * i] - q0[2 * i], q1[2 * i + 1] - q0[2 * i + 1]))
+    return largest
+
+
+@kernel
+def within_rates(q0, q1, duration, section_length, bend_rate, tip_speed):
+    """Whether the motion q0 -> q1 in ``duration`` [s] keeps to the bending rate and the tip speed."""
+    if largest_bend_change(q0, q1) > bend_rate * duration * (1.0 + 1e-9):
+        return False
+    return fastest_tip(q0, q1, section_length) <= tip_speed * duration * (1.0 + 1e-9)
+
+
+@kernel
+def least_durations(q, goals, section_length, bend_rate, tip_speed):
+    """Shortest time [s] of the straight motion from ``q`` (2n,) to each of ``goals`` (K, 2n) at the given rates."""
+    out = np.empty(goals.shape[0])
+    for k in range(goals.shape[0]):
+        out[k] = max(
+            largest_bend_change(q, goals[k]) / bend_rate, fastest_tip(q, goals[k], section_length) / tip_speed
+        )
+    return out
+
+
+@kernel
+def motion_valid(
+    q0, t0, q1, t1, section_length, arm_radius, max_bend, bend_rate, tip_speed, tolerance, world
+):
+    """Whether the motion goes forward in time, within bends and rates, and is free of obstacles at every instant.
+
+    Cheap refusals come first: nine motions of ten that a space-time tree proposes are backward or too fast.
+    """
+    if not t1 > t0:
+        return False
+    for i in range(q1.shape[0] // 2):  # the start was an end before; discs are convex
+        if math.hypot(q1[2 * i], q1[2 * i + 1]) > max_bend + 1e-9:
+            return False
+    if not within_rates(q0, q1, t1 - t0, section_length, bend_rate, tip_speed):
+        return False
+    share, _ = motion_clear_until(q0, t0, q1, t1, 0.0, tolerance, section_length, arm_radius, world)
+    return share >= 1.0
+
+
+@kernel
+def motions_valid(
+    before, t0, after, t1, section_length, arm_radius, max_bend, bend_rate, tip_speed, tolerance, world
+):
+    """``motion_valid`` from each of ``before`` (A, 2n) to each of ``after`` (B, 2n): (A, B)."""
+    out = np.empty((before.shape[0], after.shape[0]), np.bool_)
+    for a in range(before.shape[0]):
+        for b in range(after.shape[0]):
+            out[a, b] = motion_valid(
+                before[a], t0, after[b], t1, section_length, arm_radius, max_bend, bend_rate, tip_speed, tolerance, world
+            )
+    return out

@@ -1,0 +1,57 @@
+"""What the house's own planners share: they are OMPL planners, and all they write is a search."""
+
+from abc import abstractmethod
+from collections.abc import Callable
+
+from ompl import base as ob
+from ompl import geometric as og
+
+from planners.problem import SpaceTimeProblem, TimedPath, read_state, write_state
+from scenarios.arm import FloatArray
+
+
+class ArmPlanner(ob.Planner):
+    """An ``ompl.base.Planner`` whose ``search`` works on arrays; OMPL states are touched at the ends only."""
+
+    def __init__(self, problem: SpaceTimeProblem, name: str) -> None:
+        """Plan on ``problem``; ``name`` is the name OMPL reports."""
+        super().__init__(problem.si, name)
+        self.problem = problem
+        self.state_checks = 0
+        """Configurations checked by this planner's own kernels, beside those the shared checker counts."""
+
+    @abstractmethod
+    def search(self, q: FloatArray, now_s: float, stop: Callable[[], bool]) -> TimedPath | None:
+        """Find a timed path from configuration ``q`` (dof,) [rad] at ``now_s`` [s]; None when there is none.
+
+        ``stop`` says that the budget is spent; a search asks it between its own bounded pieces of work.
+        """
+
+    def solve(self, ptc: ob.PlannerTerminationCondition) -> ob.PlannerStatus:
+        """Run ``search`` from the problem's start state and hand its path to OMPL."""
+        start = self.getPlannerInputStates().nextStart()
+        if start is None:
+            return ob.PlannerStatus(ob.PlannerStatus.INVALID_START)
+        dof = self.problem.query.arm.dof
+        q, now_s = read_state(start, dof)
+        if ptc():
+            return ob.PlannerStatus(ob.PlannerStatus.TIMEOUT)
+        found = self.search(q, now_s, ptc)
+        if found is None:
+            return ob.PlannerStatus(ob.PlannerStatus.TIMEOUT if ptc() else ob.PlannerStatus.INFEASIBLE)
+        si, path = self.problem.si, og.PathGeometric(self.problem.si)
+        state = si.allocState()
+        for configuration, time_s in zip(found.configurations_rad, found.times_s, strict=True):
+            write_state(state, configuration, time_s)
+            path.append(state)
+        distance = self.problem.query.goal_distance(found.configurations_rad[-1])
+        reached = distance <= self.problem.query.goal_tolerance_m
+        # Without its name OMPL books the path under "Unknown".
+        self.getProblemDefinition().addSolutionPath(path, not reached, distance, self.getName())
+        return ob.PlannerStatus(
+            ob.PlannerStatus.EXACT_SOLUTION if reached else ob.PlannerStatus.APPROXIMATE_SOLUTION
+        )
+
+
+
+

@@ -1,0 +1,40 @@
+"""Prediction of obstacle motion from observations."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from planners.prediction.cubic import CubicPredictor
+from planners.prediction.observation import Observation
+from planners.prediction.predictor import Predictor
+from planners.prediction.truth import TruthPredictor
+from scenarios.scenario import Scenario
+from scenarios.spec import known_name
+
+
+class PredictorEntry(NamedTuple):
+    """One line of the registry."""
+
+    summary: str
+    build: Callable[[Scenario], Predictor]
+    is_oracle: bool = False
+    """Sees the true future: a bound, never a method to be ranked."""
+
+
+PREDICTORS: dict[str, PredictorEntry] = {
+    "cubic": PredictorEntry("cubic spline over the last 5 observations (the paper's)", lambda _: CubicPredictor()),
+    "truth": PredictorEntry(
+        "the true motion: a bound", lambda scenario: TruthPredictor(scenario.obstacles), is_oracle=True
+    ),
+}
+
+
+def build_predictor(name: str, scenario: Scenario) -> Predictor:
+    """Build the predictor called ``name``; only an oracle reads the scenario's obstacles.
+
+    Raises:
+        SpecError: The name is unknown; the message lists the known ones.
+    """
+    return PREDICTORS[known_name("predictor", name, PREDICTORS)].build(scenario)
+
+
+__all__ = ["PREDICTORS", "Observation", "Predictor", "PredictorEntry", "build_predictor"]

@@ -1,0 +1,206 @@
+"""The space-time planning problem that every planner receives through OMPL.
+
+One ``SpaceInformation`` over (configuration, time), one state validity checker, one motion validator and one goal. OMPL
+facts behind the shape of this file: the checker and the validator must not hold the ``SpaceInformation`` (the cycle
+leaks through C++), callbacks must return a real ``bool``, and an element-wise read is the cheapest way out of a state.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from ompl import base as ob
+
+from planners import _kernels
+from scenarios.arm import ContinuumArm, FloatArray
+from scenarios.collision import CONTACT_TOLERANCE_M
+from scenarios.world import SampledWorld
+
+
+class TimedPath(NamedTuple):
+    """Timed states, linear in bending vectors between them."""
+
+    times_s: FloatArray
+    """Strictly increasing, shape (k,), [s]."""
+    configurations_rad: FloatArray
+    """Shape (k, dof), [rad]."""
+
+
+class Query(NamedTuple):
+    """What one solve is about, shared by the checker, the validator and the planners."""
+
+    arm: ContinuumArm
+    goal_m: FloatArray
+    """Goal point of the tip, shape (3,), [m]."""
+    goal_tolerance_m: float
+    world: SampledWorld
+    """The obstacles as predicted."""
+    limits: bool
+    """Whether planners whose paths may otherwise jump in shape must keep to what the motion validator allows."""
+
+    def goal_distance(self, q: FloatArray) -> float:
+        """Distance of the tip at ``q`` (dof,) [rad] from the goal point [m]."""
+        return float(_kernels.tip_distance(q, self.arm.section_length_m, self.goal_m))
+
+
+def read_state(state: ob.State, dof: int) -> tuple[FloatArray, float]:
+    """Copy (configuration (dof,) [rad], time [s]) out of an OMPL state."""
+    bending = state[0]
+    return np.array([bending[i] for i in range(dof)]), float(state[1].position)
+
+
+def write_state(state: ob.State, q: FloatArray, time_s: float) -> None:
+    """Write a configuration (dof,) [rad] and a time [s] into an OMPL state."""
+    state[0][0 : len(q)] = q.tolist()
+    state[1].position = float(time_s)
+
+
+class SpaceTimeChecker(ob.StateValidityChecker):
+    """The one state validity checker: bends within limits and no contact at the state's time."""
+
+    def __init__(self, si: ob.SpaceInformation, query: Query) -> None:
+        """Check states against ``query``, which may be replaced at every solve."""
+        super().__init__(si)
+        self.query = query
+        self.checks = 0
+
+    def isValid(self, state: ob.State) -> bool:  # noqa: N802  (OMPL's name)
+        """Whether the state is free of the predicted obstacles."""
+        return self.clearance(state) > 0.0
+
+    def clearance(self, state: ob.State) -> float:
+        """Signed distance to the nearest predicted obstacle [m]; -inf past the bending limit."""
+        self.checks += 1
+        arm, world = self.query.arm, self.query.world
+        q, time_s = read_state(state, arm.dof)
+        if not bool(arm.within_bends(q)):
+            return -math.inf
+        return float(_kernels.clearance(q, time_s, arm.section_length_m, arm.radius_m, world))
+
+
+class SpaceTimeMotionValidator(ob.MotionValidator):
+    """The one motion validator: forward in time, within the arm's rates, collision-free at every instant."""
+
+    def __init__(self, si: ob.SpaceInformation, query: Query) -> None:
+        """Check motions against ``query``, which may be replaced at every solve."""
+        super().__init__(si)
+        self.query = query
+        self.checks = 0
+
+    def checkMotion(self, start: ob.State, end: ob.State) -> bool:  # noqa: N802  (OMPL's name)
+        """Whether the motion, linear in bending vectors, is possible and free under the prediction."""
+        dof = self.query.arm.dof
+        return self.check(*read_state(start, dof), *read_state(end, dof))
+
+    def check(self, q0: FloatArray, t0_s: float, q1: FloatArray, t1_s: float) -> bool:
+        """The same on arrays (dof,) [rad] and times [s]; one compiled call."""
+        return bool(self.check_all(q0[None], t0_s, q1[None], t1_s)[0, 0])
+
+    def check_all(self, before: FloatArray, t0_s: float, after: FloatArray, t1_s: float) -> npt.NDArray[np.bool_]:
+        """The same from each of ``before`` (A, dof) to each of ``after`` (B, dof), in one compiled call: (A, B)."""
+        self.checks += len(before) * len(after)
+        arm = self.query.arm
+        valid: npt.NDArray[np.bool_] = _kernels.motions_valid(
+            before, t0_s, after, t1_s, arm.section_length_m, arm.radius_m, arm.max_bend_rad,
+            arm.max_bend_rate_rad_s, arm.max_tip_speed_m_s, CONTACT_TOLERANCE_M, self.query.world,
+        )  # fmt: skip
+        return valid
+
+
+class TipGoal(ob.GoalSampleableRegion):
+    """All states whose tip lies within the goal tolerance; samples known goal configurations at random arrivals."""
+
+    def __init__(
+        self,
+        si: ob.SpaceInformation,
+        query: Query,
+        configurations: FloatArray,
+        earliest_s: FloatArray,
+        latest_s: float,
+        rng: np.random.Generator,
+    ) -> None:
+        """Offer ``configurations`` (K, dof) [rad], each arriving no earlier than ``earliest_s`` (K,) [s]."""
+        super().__init__(si)
+        self._query = query
+        self._configurations = configurations
+        self._earliest_s = earliest_s
+        self._latest_s = latest_s
+        self._rng = rng
+        # Strictly inside: the audit measures the same distance with other arithmetic.
+        self.setThreshold(0.999 * query.goal_tolerance_m)
+
+    def distanceGoal(self, state: ob.State) -> float:  # noqa: N802  (OMPL's name)
+        """Distance of the state's tip from the goal point [m]."""
+        q, _ = read_state(state, self._query.arm.dof)
+        return self._query.goal_distance(q)
+
+    def sampleGoal(self, state: ob.State) -> None:  # noqa: N802  (OMPL's name)
+        """Write a goal configuration at an arrival time drawn between its earliest and the planning horizon."""
+        k = int(self._rng.integers(len(self._configurations)))
+        write_state(state, self._configurations[k], self._rng.uniform(self._earliest_s[k], self._latest_s))
+
+    def maxSampleCount(self) -> int:  # noqa: N802  (OMPL's name)
+        """As many as asked for, when there is a goal configuration at all."""
+        return 1_000_000 if len(self._configurations) else 0
+
+    def couldSample(self) -> bool:  # noqa: N802  (OMPL's name)
+        """Whether a goal configuration is known."""
+        return len(self._configurations) > 0
+
+
+class SpaceTimeProblem:
+    """One arm's ``SpaceInformation`` with the shared checker and validator; lives as long as a trial."""
+
+    TIME_WEIGHT = 0.5
+
+    def __init__(self, query: Query, horizon_s: float) -> None:
+        """Build the time-augmented configuration space for ``query``'s arm."""
+        arm = query.arm
+        self.query = query
+        self.horizon_s = horizon_s
+        bending = ob.RealVectorStateSpace(arm.dof)
+        bounds = ob.RealVectorBounds(arm.dof)
+        bounds.setLow(-arm.max_bend_rad)
+        bounds.setHigh(arm.max_bend_rad)
+        bending.setBounds(bounds)
+        # Every section turns at most at the bending rate, so the whole vector moves at most sqrt(n) times that.
+        v_max = arm.max_bend_rate_rad_s * math.sqrt(arm.n_sections)
+        self.space = ob.SpaceTimeStateSpace(bending, v_max, self.TIME_WEIGHT)
+        self.space.setTimeBounds(0.0, horizon_s)
+        self.si = ob.SpaceInformation(self.space)
+        self.checker = SpaceTimeChecker(self.si, query)
+        self.validator = SpaceTimeMotionValidator(self.si, query)
+        self.si.setStateValidityChecker(self.checker)
+        self.si.setMotionValidator(self.validator)
+        self.si.setup()
+
+    def update(self, query: Query, now_s: float) -> None:
+        """Make every later check answer to ``query``; times may run from ``now_s`` to the horizon."""
+        self.query = query
+        self.checker.query = query
+        self.validator.query = query
+        self.space.setTimeBounds(now_s, now_s + self.horizon_s)
+        self.space.updateEpsilon()
+
+    def definition(
+        self, q: FloatArray, now_s: float, goal_configurations: FloatArray, rng: np.random.Generator
+    ) -> ob.ProblemDefinition:
+        """Pose the solve: from ``q`` (dof,) at ``now_s`` to the goal, which may be sampled at K known configurations.
+
+        A configuration arrives no earlier than the arm's rates allow.
+        """
+        arm = self.query.arm
+        start = self.si.allocState()
+        write_state(start, q, now_s)
+        definition = ob.ProblemDefinition(self.si)
+        definition.addStartState(start)
+        needed = _kernels.least_durations(
+            q, goal_configurations, arm.section_length_m, arm.max_bend_rate_rad_s, arm.max_tip_speed_m_s
+        )
+        reachable = needed < self.horizon_s
+        goal = TipGoal(
+            self.si, self.query, goal_configurations[reachable], now_s + needed[reachable], now_s + self.horizon_s, rng
+        )
+        definition.setGoal(goal)
+        return definition

@@ -1,0 +1,120 @@
+"""The registry: one entry per planner, and the notation in which users name them."""
+
+from collections.abc import Callable
+from typing import Any, Literal, NamedTuple
+
+from ompl import base as ob
+from pydantic import BaseModel
+
+from planners.potential_field import PotentialFieldPlanner, PotentialFieldSettings
+from planners.problem import SpaceTimeProblem
+from planners.sampling import RRTSettings, build_rrt
+from planners.temporal.planner import TemporalPlanner, TemporalSettings
+from scenarios.spec import SpecError, known_name, parse_settings, parse_spec
+from scenarios.spec import split_specs as split_texts
+
+Commitment = Literal["path", "while_valid", "step"]
+"""When to ask a planner again: at the end of its path (Algorithm 2), as soon as the newest prediction makes the rest
+of its path invalid, or at every step."""
+
+
+class PlannerEntry(NamedTuple):
+    """One line of the registry."""
+
+    name: str
+    summary: str
+    source: str
+    settings: type[BaseModel]
+    build: Callable[[SpaceTimeProblem, Any], ob.Planner]
+    commitment: Commitment
+    horizon_s: Callable[[Any], float]
+    """How far ahead its settings make it look [s]."""
+    prediction_step_s: float = 1.0
+    """Spacing of the predicted positions it is given [s]."""
+    is_bound: bool = False
+    """Sees the true future: shows what is possible and is never ranked."""
+
+
+PLANNERS: dict[str, PlannerEntry] = {
+    entry.name: entry
+    for entry in (
+        PlannerEntry(
+            "temporal",
+            "temporal cubes-graph and layered graph of configurations",
+            "Meng et al., ICRA 2021, Algorithms 1 and 2",
+            TemporalSettings,
+            TemporalPlanner,
+            "path",
+            lambda s: float(s.horizon),
+        ),
+        PlannerEntry(
+            "rrt",
+            "OMPL's RRT in space-time, replanned when the prediction invalidates the path",
+            "LaValle 1998; paper, section IV",
+            RRTSettings,
+            build_rrt,
+            "while_valid",
+            lambda s: float(s.horizon_s),
+            prediction_step_s=0.25,
+        ),
+        PlannerEntry(
+            "pf",
+            "potential field on the arm's body",
+            "Godage et al., ICMA 2012; Ataka et al., ICRA 2016; paper, section IV-C",
+            PotentialFieldSettings,
+            PotentialFieldPlanner,
+            "step",
+            lambda _: 1.0,
+        ),
+    )
+}
+
+ALIASES: dict[str, tuple[str, dict[str, str]]] = {
+    "t2": ("temporal", {"horizon": "2"}),
+    "t3": ("temporal", {"horizon": "3"}),
+}
+"""The paper's names of a planner with settings."""
+
+
+class PlannerSpec(NamedTuple):
+    """A planner with its settings, as a user names it; can be sent to another process."""
+
+    label: str
+    """As typed, without blanks; it names the planner in every table."""
+    name: str
+    """Key of ``PLANNERS``."""
+    settings: BaseModel
+
+    def __str__(self) -> str:
+        """The label, from which ``parse_planner`` makes the same spec."""
+        return self.label
+
+
+def parse_planner(text: str) -> PlannerSpec:
+    """Read ``temporal[horizon=3]``, ``t2`` or ``rrt``.
+
+    Raises:
+        SpecError: Unknown planner or setting, or a value out of range; the message lists what is allowed.
+    """
+    typed, values = parse_spec(text)
+    known_name("planner", typed, [*PLANNERS, *ALIASES])
+    name, preset = ALIASES.get(typed, (typed, {}))
+    fixed = [key for key in values if key in preset]
+    if fixed:
+        raise SpecError(f"{typed}: found setting {fixed[0]!r}, allowed on {name}[{fixed[0]}=...] only")
+    settings = parse_settings(typed, PLANNERS[name].settings, {**preset, **values})
+    return PlannerSpec("".join(text.split()), name, settings)
+
+
+def split_specs(text: str) -> list[PlannerSpec]:
+    """Read a comma-separated list of planners.
+
+    Raises:
+        SpecError: As ``parse_planner``, or the same planner stands twice.
+    """
+    specs = [parse_planner(part) for part in split_texts(text)]
+    labels = [spec.label for spec in specs]
+    if len(set(labels)) < len(labels):
+        twice = next(label for label in labels if labels.count(label) > 1)
+        raise SpecError(f"planners: found {twice!r} twice, allowed once")
+    return specs

@@ -1,0 +1,160 @@
+"""One planner at work on one scenario: the only door through which the suite speaks to planners."""
+
+import time
+from typing import NamedTuple
+
+import numpy as np
+from ompl import base as ob
+from ompl import util as ou
+
+from planners.base import ArmPlanner
+from planners.goals import goal_configurations
+from planners.prediction import Observation, build_predictor
+from planners.problem import Query, SpaceTimeProblem, read_state
+from planners.registry import PLANNERS, PlannerSpec
+from scenarios.arm import ContinuumArm, FloatArray
+from scenarios.scenario import Scenario
+from scenarios.world import SampledWorld
+
+
+GOALS = 64
+"""Goal configurations looked for per trial."""
+
+
+class Plan(NamedTuple):
+    """What one solve gave."""
+
+    status: str
+    """OMPL's name of the status."""
+    times_s: FloatArray
+    """Times of the path, shape (k,), [s]; empty when there is no path."""
+    configurations_rad: FloatArray
+    """Shape (k, dof), [rad]."""
+    solve_time_s: float
+    """Wall time of ``Planner.solve`` alone."""
+    state_checks: int
+    motion_checks: int
+
+
+class Session:
+    """Owns every OMPL object of a trial; fresh per trial, so that equal seeds give equal paths."""
+
+    def __init__(self, spec: PlannerSpec, scenario: Scenario, *, predictor: str, limits: bool, seed: int) -> None:
+        """Set up ``spec`` for ``scenario``.
+
+        Args:
+            spec: The planner with its settings.
+            scenario: The problem; planners see its arm, start and goal, never its obstacles' motion.
+            predictor: Name of the predictor that stands between observations and planner.
+            limits: Whether the motion limits bind planners whose paths may otherwise jump in shape.
+            seed: Seed of all randomness in this trial.
+
+        Raises:
+            SpecError: Unknown predictor.
+        """
+        entry = PLANNERS[spec.name]
+        self.commitment = entry.commitment
+        self._iterations = getattr(spec.settings, "iterations", None)
+        self._horizon_s = entry.horizon_s(spec.settings)
+        self._step_s = entry.prediction_step_s
+        self._scenario, self._limits = scenario, limits
+        self._predictor = build_predictor("truth" if entry.is_bound else predictor, scenario)
+        self._rng = np.random.default_rng(seed)
+        _seed_ompl(seed)
+        empty = SampledWorld(0.0, 1.0, np.empty((2, 0, 3)), np.empty((2, 0)), 0.0)
+        self._problem = SpaceTimeProblem(self._query(empty), self._horizon_s)
+        self._goals = goal_configurations(scenario.arm, scenario.goal, scenario.goal_tolerance_m, GOALS, self._rng)
+        self._planner = entry.build(self._problem, spec.settings)
+
+    def plan(self, q: FloatArray, now_s: float, observation: Observation) -> Plan:
+        """Predict the obstacles and solve once from ``q`` (dof,) [rad] at ``now_s`` [s]."""
+        self._look(observation, now_s)
+        definition = self._problem.definition(q, now_s, self._goals, self._rng)
+        self._planner.setProblemDefinition(definition)
+        self._planner.clearQuery()
+        self._planner.setup()
+        before = self._checks()
+        budget = _budget(self._iterations)
+        started = time.perf_counter()
+        status = self._planner.solve(budget)
+        elapsed = time.perf_counter() - started
+        states, motions = (after - b for after, b in zip(self._checks(), before, strict=True))
+        times, path = self._path(definition)
+        return Plan(status.asString(), times, path, elapsed, states, motions)
+
+    def still_valid(self, times_s: FloatArray, configurations_rad: FloatArray, observation: Observation) -> bool:
+        """Whether the rest of a path, its first state being now, is valid under the newest observation."""
+        self._look(observation, float(times_s[0]))
+        check = self._problem.validator.check
+        return all(
+            check(configurations_rad[k], times_s[k], configurations_rad[k + 1], times_s[k + 1])
+            for k in range(len(times_s) - 1)
+        )
+
+    def _look(self, observation: Observation, now_s: float) -> None:
+        world = self._predictor.predict(observation, self._horizon_s, self._step_s)
+        self._problem.update(self._query(world), now_s)
+
+    def _query(self, world: SampledWorld) -> Query:
+        scenario = self._scenario
+        return Query(scenario.arm, scenario.goal, scenario.goal_tolerance_m, world, self._limits)
+
+    def _checks(self) -> tuple[int, int]:
+        own = self._planner.state_checks if isinstance(self._planner, ArmPlanner) else 0
+        return self._problem.checker.checks + own, self._problem.validator.checks
+
+    def _path(self, definition: ob.ProblemDefinition) -> tuple[FloatArray, FloatArray]:
+        """Times (k,) and configurations (k, dof) of the solution; empty without one that a planner vouches for.
+
+        OMPL's trees hand out their nearest approach as an approximate solution: it leads nowhere in particular and is
+        not executed. The house's planners return approximate paths on purpose, one window at a time.
+        """
+        dof = self._scenario.arm.dof
+        approximate_counts = isinstance(self._planner, ArmPlanner)
+        if not definition.hasSolution() or not (approximate_counts or definition.hasExactSolution()):
+            return np.empty(0), np.empty((0, dof))
+        states = [read_state(state, dof) for state in definition.getSolutionPath().getStates()]
+        return np.array([t for _, t in states]), np.array([q for q, _ in states])
+
+
+def warm_up(specs: list[PlannerSpec], arm: ContinuumArm) -> None:
+    """Compile every kernel and build every table that ``specs`` need, so that no timed solve does.
+
+    Must run once before worker processes start: they then load both from the cache.
+    """
+    from scenarios.motion import Orbit
+    from scenarios.obstacle import Obstacle
+
+    motion = Orbit(center_m=(0.0, 0.0, 1.0), radius_m=0.1, normal=(0.0, 0.0, 1.0), rate_rad_s=0.1, phase_rad=0.0)
+    start = np.full(arm.dof, 0.1)
+    scenario = Scenario(
+        id="warm-up",
+        arm=arm,
+        start_rad=tuple(start.tolist()),
+        goal_m=tuple(arm.tip(start + 0.3).tolist()),
+        obstacles=(Obstacle(radius_m=0.02, motion=motion),),
+    )
+    times = np.arange(-scenario.observation_s, 1.0)
+    positions = np.stack([obstacle.position(times) for obstacle in scenario.obstacles], axis=1)
+    observation = Observation(times, positions, np.array([0.02]))
+    for spec in specs:
+        for limits in (False, True):
+            session = Session(spec, scenario, predictor="cubic", limits=limits, seed=1)
+            plan = session.plan(start, 0.0, observation)
+            if len(plan.times_s):
+                session.still_valid(plan.times_s, plan.configurations_rad, observation)
+
+
+def _budget(iterations: int | None) -> ob.PlannerTerminationCondition:
+    """A budget counted in the planner's own questions, so that a seed gives the same path on any machine."""
+    if iterations is None:
+        return ob.PlannerTerminationCondition(lambda: False)
+    asked = iter(range(iterations))
+    return ob.PlannerTerminationCondition(lambda: next(asked, None) is None)
+
+
+def _seed_ompl(seed: int) -> None:
+    """Reseed OMPL's process-wide generator; it warns about every seed after the first, but takes it."""
+    ou.setLogLevel(ou.LogLevel.LOG_NONE)
+    ou.RNG.setSeed(seed % (2**31 - 1) + 1)
+    ou.setLogLevel(ou.LogLevel.LOG_ERROR)

@@ -1,0 +1,1 @@
+"""Temporal graphs, and the paper's planner on them."""
