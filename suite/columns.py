@@ -1,13 +1,13 @@
 """The columns of a trial row, declared once.
 
-The journal's table, ``trials.csv``, the frames read back from either and the documentation are all made from ``COLUMNS``.
-A value that a trial does not have (the arrival time of an arm that never arrived) is None in Python and an empty cell in
-files.
+The journal's table, ``trials.csv``, the frames read back from either and the documentation are all made from
+``COLUMNS``. A value that a trial does not have (the arrival time of an arm that never arrived) is None in Python and an
+empty cell in files.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, Literal, NamedTuple
 
 DType = Literal["string", "boolean", "Int64", "float64"]
@@ -99,9 +99,15 @@ def complete_row(values: Mapping[str, Any]) -> Row:
 
 
 def _plain(dtype: DType, value: Any) -> str | bool | int | float | None:
-    """Turn a NumPy or Python scalar into the plain Python value a column of this type holds."""
+    """Turn a NumPy or Python scalar into the plain Python value that a column of this type holds."""
     if value is None or value != value:  # NaN is the only value that differs from itself
         return None
-    plain: type[str] | type[bool] | type[int] | type[float]
-    plain = {"string": str, "boolean": bool, "Int64": int, "float64": float}[dtype]  # type: ignore[assignment]
-    return plain(value)
+    return _PLAIN_TYPES[dtype](value)
+
+
+_PLAIN_TYPES: dict[DType, Callable[[Any], str | bool | int | float]] = {
+    "string": str,
+    "boolean": bool,
+    "Int64": int,
+    "float64": float,
+}

@@ -9,15 +9,10 @@ class SuiteError(ValueError):
     """A mistake the user can mend; the message is one line for the terminal."""
 
 
-def describe(error: ValidationError, of: str) -> str:
-    """Put the first finding of a pydantic validation into one line.
-
-    Args:
-        error: What pydantic found.
-        of: What was validated, such as a file name.
-    """
+def one_line(error: ValidationError) -> str:
+    """The first finding of a pydantic validation: field, what was found and what is allowed."""
     finding = error.errors(include_url=False)[0]
-    where = ".".join(str(part) for part in finding["loc"] if not isinstance(part, int))
-    reason = finding["msg"].removeprefix("Value error, ")
-    subject = ": ".join(part for part in (of, where) if part)
-    return f"{subject}: {reason[0].lower()}{reason[1:]} (found {finding['input']!r})"
+    if finding["type"] == "value_error":  # raised by a validator of ours, whose message is already whole
+        return str(finding["ctx"]["error"])
+    field = ".".join(str(part) for part in finding["loc"])
+    return f"{field}: found {finding['input']!r}, allowed: {finding['msg']}"

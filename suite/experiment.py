@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -10,10 +11,11 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
-from planners import PREDICTORS, PlannerSpec, parse_spec
-from scenarios.families import FAMILIES, generate
-from scenarios.scenario import Scenario, load_scenarios
-from suite.errors import SuiteError, describe
+from planners import PREDICTORS, PlannerSpec, parse_planner
+from scenarios import Scenario, generate, load_scenarios
+from scenarios.families import parse_family
+from scenarios.spec import known_name
+from suite.errors import SuiteError, one_line
 from suite.trial import TrialTask
 
 MAX_TRIALS_IN_ALL = 1_000_000
@@ -44,29 +46,30 @@ class Experiment(BaseModel):
     @field_validator("planners")
     @classmethod
     def _known_planners(cls, planners: tuple[str, ...]) -> tuple[str, ...]:
-        labels = [parse_spec(text).label for text in planners]
-        _refuse_repeats(labels)
-        return planners
+        labels = tuple(parse_planner(text).label for text in planners)
+        _refuse_repeats("planners", labels)
+        return labels
 
     @field_validator("family")
     @classmethod
     def _known_family(cls, family: str) -> str:
-        return _one_of(family, FAMILIES)
+        parse_family(family)
+        return family
 
     @field_validator("predictor")
     @classmethod
     def _known_predictor(cls, predictor: str) -> str:
-        return _one_of(predictor, PREDICTORS)
+        return known_name("predictor", predictor, PREDICTORS)
 
     @field_validator("obstacles")
     @classmethod
     def _different_obstacles(cls, obstacles: tuple[int, ...]) -> tuple[int, ...]:
-        _refuse_repeats(obstacles)
+        _refuse_repeats("obstacles", obstacles)
         return obstacles
 
     def specs(self) -> list[PlannerSpec]:
         """The planners, in the order they were asked for."""
-        return [parse_spec(text) for text in self.planners]
+        return [parse_planner(text) for text in self.planners]
 
     def scenarios(self) -> list[Scenario]:
         """Load or generate the scenarios, in a fixed order.
@@ -76,46 +79,43 @@ class Experiment(BaseModel):
             SuiteError: Two scenarios are the same, or there are too many trials.
         """
         if self.scenario_files:
-            scenarios = [scenario for file in self.scenario_files for scenario in load_scenarios(Path(file))]
+            scenarios = [scenario for file in self.scenario_files for scenario in load_scenarios(file)]
             _refuse_twins(scenarios)
-            count = len(scenarios)
-        else:
-            count = len(self.obstacles) * self.trials
-        if count * len(self.planners) > MAX_TRIALS_IN_ALL:
-            raise SuiteError(f"experiment: found {count * len(self.planners)} trials, allowed {MAX_TRIALS_IN_ALL}")
-        if self.scenario_files:
+            self._refuse_too_many(len(scenarios))
             return scenarios
+        self._refuse_too_many(len(self.obstacles) * self.trials)  # before they are generated
         return [s for n in self.obstacles for s in generate(self.family, n, self.trials, self.seed)]
+
+    def _refuse_too_many(self, n_scenarios: int) -> None:
+        n_trials = n_scenarios * len(self.planners)
+        if n_trials > MAX_TRIALS_IN_ALL:
+            raise SuiteError(f"experiment: found {n_trials} trials in all, allowed {MAX_TRIALS_IN_ALL}")
 
     def tasks(self, scenarios: Iterable[Scenario]) -> Iterator[TrialTask]:
         """Every planner on every scenario: scenario by scenario, so that an unfinished run compares like with like."""
         specs = self.specs()
         for scenario in scenarios:
             for spec in specs:
-                yield TrialTask(
-                    scenario, spec, self.predictor, self.limits, self.seed, self.noise_mm, self.dropout
-                )
+                yield TrialTask(scenario, spec, self.predictor, self.limits, self.seed, self.noise_mm, self.dropout)
 
     @property
-    def digest(self) -> str:
-        """Eight hex digits that name the experiment; scenario files count by their path."""
-        return hashlib.sha256(self.model_dump_json().encode()).hexdigest()[:8]
+    def name(self) -> str:
+        """A folder name: where the scenarios come from, and a hash of everything."""
+        source = Path(self.scenario_files[0]).stem if self.scenario_files else self.family.partition("[")[0]
+        digest = hashlib.sha256(self.model_dump_json().encode()).hexdigest()
+        return f"{source}-{digest[:8]}"
 
 
-def make_experiment(of: str = "", **values: Any) -> Experiment:
-    """Validate ``values`` into an experiment.
-
-    Args:
-        of: Where the values come from, for the error line.
-        values: Fields of ``Experiment``.
+def make_experiment(**values: Any) -> Experiment:
+    """Validate the fields of an experiment.
 
     Raises:
-        SuiteError: A value is not allowed; one line that names field, what was found and what is allowed.
+        SuiteError: A value is not allowed; one line that names the field, what was found and what is allowed.
     """
     try:
         return Experiment(**values)
     except ValidationError as error:
-        raise SuiteError(describe(error, of)) from error
+        raise SuiteError(one_line(error)) from None
 
 
 PRESETS: dict[str, dict[str, Any]] = {
@@ -124,21 +124,39 @@ PRESETS: dict[str, dict[str, Any]] = {
 """Named experiments, as fields of ``Experiment``; ``table1`` is Table I of the paper."""
 
 
-def _one_of(name: str, known: Iterable[str]) -> str:
-    if name not in known:
-        raise ValueError(f"unknown, known: {', '.join(known)}")
-    return name
+def preset_fields(preset: str) -> dict[str, Any]:
+    """Fields of a named experiment, or of the one in a manifest.
+
+    Args:
+        preset: A name in ``PRESETS``, or a file ``manifest.json`` of a run.
+
+    Raises:
+        SuiteError: There is no such name or file, or no experiment in it.
+    """
+    if preset in PRESETS:
+        return PRESETS[preset]
+    if not preset.endswith(".json"):
+        raise SuiteError(f"preset: found {preset!r}, allowed {', '.join(PRESETS)} or the manifest.json of a run")
+    try:
+        fields = json.loads(Path(preset).read_text(encoding="utf-8"))["experiment"]
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise SuiteError(f"{preset}: found no experiment in it ({type(error).__name__})") from None
+    if not isinstance(fields, dict):
+        raise SuiteError(f"{preset}: experiment: found {fields!r}, allowed its fields by name")
+    return fields
 
 
-def _refuse_repeats(values: Iterable[object]) -> None:
+def _refuse_repeats(field: str, values: Iterable[object]) -> None:
     value, times = Counter(values).most_common(1)[0]
     if times > 1:
-        raise ValueError(f"each may be given once, {value} is given {times} times")
+        raise ValueError(f"{field}: found {value} {times} times, allowed once")
 
 
 def _refuse_twins(scenarios: list[Scenario]) -> None:
-    seen: dict[str, Scenario] = {}
+    """A trial is known by its scenario's content, and its seed and row by the scenario's name."""
+    by_hash: dict[str, str] = {}
     for scenario in scenarios:
-        twin = seen.setdefault(scenario.content_hash, scenario)
-        if twin is not scenario:
-            raise SuiteError(f"scenario files: {scenario.id} is the same scenario as {twin.id}")
+        twin = by_hash.setdefault(scenario.content_hash, scenario.id)
+        if twin != scenario.id:
+            raise SuiteError(f"scenario files: found {scenario.id}, the same problem as {twin}, allowed once")
+    _refuse_repeats("scenario files", [scenario.id for scenario in scenarios])

@@ -1,0 +1,54 @@
+"""The files that are made from the journal, whole and anew each time."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TextIO
+
+import pandas as pd
+
+from scenarios import Scenario
+from suite.files import replacing, write_text
+from suite.journal import Executed, Journal
+from suite.tables import summarize
+from suite.text import as_csv, as_markdown_page
+from suite.trials import trials_csv, trials_frame
+
+
+def write_derived(
+    folder: Path, journal: Journal, scenarios: Sequence[Scenario], planners: Sequence[str]
+) -> pd.DataFrame:
+    """Write trials, tables, scenarios and trajectories.
+
+    Args:
+        folder: The run's folder.
+        journal: The run's journal.
+        scenarios: The run's scenarios.
+        planners: Labels in the order in which the tables show them.
+
+    Returns:
+        The summary that stands in ``table.csv``.
+    """
+    trials = trials_frame(journal.rows())
+    summary = summarize(trials, planners)
+    write_text(folder / "trials.csv", trials_csv(trials))
+    write_text(folder / "table.csv", as_csv(summary))
+    write_text(folder / "table.md", as_markdown_page(folder.name, summary))
+    write_text(folder / "scenarios.jsonl", "".join(f"{scenario.model_dump_json()}\n" for scenario in scenarios))
+    with replacing(folder / "trajectories.csv") as handle:
+        _write_trajectories(handle, journal.executed(), n_sections=max(s.arm.n_sections for s in scenarios))
+    return summary
+
+
+def _write_trajectories(handle: TextIO, executed: Iterable[Executed], n_sections: int) -> None:
+    """One line per timed state; arms with fewer sections leave the last columns empty."""
+    writer = csv.writer(handle, lineterminator="\n")
+    bends = [f"{axis}{section}_rad" for section in range(1, n_sections + 1) for axis in "uv"]
+    writer.writerow(["scenario_id", "planner", "time_s", *bends])
+    for trial in executed:
+        for time_s, configuration in zip(trial.times_s, trial.configurations_rad, strict=True):
+            bent = [f"{bend:.9g}" for bend in configuration]
+            blank = [""] * (len(bends) - len(bent))
+            writer.writerow([trial.scenario_id, trial.planner, f"{time_s:.9g}", *bent, *blank])

@@ -1,0 +1,80 @@
+"""A run from start to end: scenarios, folder, workers, journal, tables."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+
+import pandas as pd
+
+from planners import PlannerSpec, warm_up
+from scenarios import ContinuumArm
+from suite.derived import write_derived
+from suite.episode import run_trial
+from suite.executor import Job, run_tasks
+from suite.experiment import Experiment
+from suite.manifest import make_manifest
+from suite.progress import progress
+from suite.run_folder import open_run
+
+DEFAULT_HANG_LIMIT_S = 300.0
+
+
+class RunInterrupted(Exception):
+    """The run was stopped from outside; what had finished is saved."""
+
+    def __init__(self, finished: int, total: int) -> None:
+        super().__init__(f"{finished} of {total} trials are saved")
+
+
+def run_experiment(
+    experiment: Experiment,
+    folder: Path,
+    *,
+    workers: int,
+    hang_limit_s: float = DEFAULT_HANG_LIMIT_S,
+    fresh: bool = False,
+) -> pd.DataFrame:
+    """Run what is left of an experiment and write its files.
+
+    Args:
+        experiment: What to run.
+        folder: Where the run lives; a run that was stopped there goes on.
+        workers: Number of worker processes.
+        hang_limit_s: A trial that takes longer is killed and recorded as ``planner_hung`` [s].
+        fresh: Start over, whatever an earlier run has left in the folder.
+
+    Returns:
+        The summary, one row per number of obstacles and planner.
+
+    Raises:
+        SuiteError, ScenarioError: The experiment cannot be run like this; found before anything is written.
+        RunInterrupted: Stopped by the user; the next call goes on from there.
+    """
+    scenarios = experiment.scenarios()
+    tasks = list(experiment.tasks(scenarios))
+    with open_run(folder, make_manifest(experiment, scenarios), fresh=fresh) as journal:
+        finished = journal.finished()
+        left = [task for task in tasks if task.key not in finished]
+        if left:
+            prepare = partial(_prepare, experiment.specs(), list(dict.fromkeys(task.scenario.arm for task in left)))
+            job = Job(run_trial, prepare, hang_limit_s)
+            try:
+                prepare()  # compiled and enumerated once, here, so that workers only have to load it
+                for library in ("OMP", "OPENBLAS", "MKL"):
+                    # Workers inherit this; threads of theirs would fight over the cores and disturb the timings.
+                    os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+                with progress(len(left)) as advance:
+                    for task, result in run_tasks(job, left, workers):
+                        journal.add(task, result)
+                        advance(task.spec.label)
+            except KeyboardInterrupt:
+                raise RunInterrupted(len(journal.finished()), len(tasks)) from None
+        return write_derived(folder, journal, scenarios, experiment.planners)
+
+
+def _prepare(specs: Sequence[PlannerSpec], arms: Sequence[ContinuumArm]) -> None:
+    for arm in arms:
+        warm_up(specs, arm)

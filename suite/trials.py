@@ -1,0 +1,51 @@
+"""Trial rows as a pandas frame and as ``trials.csv``."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import pandas as pd
+
+from suite.columns import COLUMN_NAMES, COLUMNS, Row
+from suite.errors import SuiteError
+
+SORTED_BY = ["family", "n_obstacles", "scenario_id", "planner"]
+"""The order of rows in files, which does not depend on the order in which trials finished."""
+
+FLOAT_FORMAT = "%.9g"
+"""How every number is written, so that equal rows give equal bytes."""
+
+
+def trials_frame(rows: Iterable[Row]) -> pd.DataFrame:
+    """The rows as a sorted frame with the declared columns and types."""
+    frame = pd.DataFrame(rows, columns=list(COLUMN_NAMES))
+    frame = frame.astype({column.name: column.dtype for column in COLUMNS})
+    return frame.sort_values(SORTED_BY, ignore_index=True)
+
+
+def trials_csv(trials: pd.DataFrame) -> str:
+    """The text of ``trials.csv``."""
+    return trials.to_csv(index=False, float_format=FLOAT_FORMAT, lineterminator="\n")
+
+
+def read_trials_csv(file: Path) -> pd.DataFrame:
+    """Read what ``trials_csv`` wrote.
+
+    Raises:
+        SuiteError: The file cannot be read, or a column is missing or holds something else than it should.
+    """
+    try:
+        text = pd.read_csv(file, dtype="string", keep_default_na=False, na_values=[""])
+    except (OSError, ValueError) as error:
+        raise SuiteError(f"{file}: cannot be read: {error}") from None
+    missing = [name for name in COLUMN_NAMES if name not in text.columns]
+    if missing:
+        raise SuiteError(f"{file}: found no column {missing[0]}, a table of trials has one")
+    frame = pd.DataFrame(index=text.index)
+    for column in COLUMNS:
+        try:
+            frame[column.name] = text[column.name].astype(column.dtype)
+        except (TypeError, ValueError) as error:
+            raise SuiteError(f"{file}: {column.name}: {error}, allowed: {column.dtype}") from None
+    return frame
