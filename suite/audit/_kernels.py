@@ -1,0 +1,395 @@
+"""Compiled geometry of the audit: its own kinematics and distances, shared with no planner. docs/audit.md derives all.
+
+The backbone is walked chord by chord. The part of an arc that a chord of bend a and arc length s cuts off stays within
+s * a / 8 of the chord, so the capsule of the chord with that pad holds the true piece. No distance is overstated.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from scenarios.kernels.jit import kernel
+
+CHORDS = 8  # per section
+SUB_CHORDS = 16  # per chord, where a distance is too small for the pad
+REFINE_RATIO = 10.0  # too small: below this many pads
+
+CONTACT_M = 1e-4
+KEPT_SHARE = 0.75  # of the smallest clearance seen: advancing proves that no instant has less
+
+SAME_TIME_S = 1e-9
+SAME_CONFIGURATION_RAD = 1e-9
+SAME_START_RAD = 1e-6
+BEND_SLACK_RAD = 1e-9
+ARRIVAL_SLACK_M = 1e-9
+LIMIT_SLACK = 1e-3
+
+OK, NOT_FINITE, WRONG_START, BACKWARD_TIME, JUMP, BEND_LIMIT, BEND_RATE, TIP_SPEED = range(8)
+ORBIT, TRACK = range(2)
+
+FloatArray = npt.NDArray[np.float64]
+
+
+class Work(NamedTuple):
+    """Work space of a look at n sections and m obstacles."""
+
+    q: FloatArray
+    nodes: FloatArray
+    bends: FloatArray
+    fine: FloatArray
+    arm_speeds: FloatArray
+    gaps: FloatArray
+    speeds: FloatArray
+    holds: FloatArray
+
+
+@kernel
+def make_work(n, m):
+    """Work space for n sections and m obstacles."""
+    return Work(
+        np.empty(2 * n),
+        np.empty((n * (CHORDS + 1), 9)),
+        np.empty(n),
+        np.empty((SUB_CHORDS + 1, 9)),
+        np.empty(n * CHORDS),
+        np.empty((m, n * CHORDS)),
+        np.empty(m),
+        np.empty(m),
+    )
+
+
+@kernel
+def _roll(start, bend, length, chords, nodes, first):
+    """Walk along an arc in equal chords from ``start`` and write chords + 1 rows of ``nodes`` from row ``first`` on.
+
+    A row is point 0:3, tangent 3:6 and the direction of bending 6:9. Each chord leaves its node at half its own bend.
+    """
+    half = 0.5 * bend / chords
+    sin, cos = math.sin(half), math.cos(half)
+    chord = length / chords * (sin / half if half > 1e-9 else 1.0)
+    turn_sin, turn_cos = 2.0 * sin * cos, 1.0 - 2.0 * sin * sin
+    for k in range(9):
+        nodes[first, k] = start[k]
+    for i in range(first, first + chords):
+        for k in range(3):
+            z, d = nodes[i, 3 + k], nodes[i, 6 + k]
+            nodes[i + 1, k] = nodes[i, k] + chord * (cos * z + sin * d)
+            nodes[i + 1, 3 + k] = turn_cos * z + turn_sin * d
+            nodes[i + 1, 6 + k] = turn_cos * d - turn_sin * z
+
+
+@kernel
+def _lay_out(q, section_length, chords, nodes, bends):
+    """Walk the whole backbone, ``chords`` to a section: rows of ``nodes`` (n * (chords + 1), 9), ``bends`` (n,)."""
+    start = np.zeros(9)
+    x, y = np.zeros(3), np.zeros(3)
+    x[0], y[1], start[5] = 1.0, 1.0, 1.0
+    for i in range(bends.shape[0]):
+        u, v = q[2 * i], q[2 * i + 1]
+        bend = math.sqrt(u * u + v * v)
+        c, s = (u / bend, v / bend) if bend > 0.0 else (1.0, 0.0)
+        for k in range(3):
+            start[6 + k] = c * x[k] + s * y[k]
+        first = i * (chords + 1)
+        _roll(start, bend, section_length, chords, nodes, first)
+        bends[i] = bend
+        for k in range(3):
+            across = c * y[k] - s * x[k]
+            start[k], start[3 + k] = nodes[first + chords, k], nodes[first + chords, 3 + k]
+            x[k] = c * nodes[first + chords, 6 + k] - s * across
+            y[k] = s * nodes[first + chords, 6 + k] + c * across
+
+
+@kernel
+def _to_chord(a, b, x, y, z):
+    """Distance from (x, y, z) to the segment between the points of two nodes."""
+    ux, uy, uz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+    wx, wy, wz = x - a[0], y - a[1], z - a[2]
+    along = (wx * ux + wy * uy + wz * uz) / (ux * ux + uy * uy + uz * uz)
+    along = min(1.0, max(0.0, along))
+    wx, wy, wz = wx - along * ux, wy - along * uy, wz - along * uz
+    return math.sqrt(wx * wx + wy * wy + wz * wz)
+
+
+@kernel
+def _to_arc(start, bend, length, x, y, z, fine):
+    """Distance from (x, y, z) to an arc by sub-chords, less their pad; ``fine`` (SUB_CHORDS + 1, 9) is work space."""
+    _roll(start, bend, length, SUB_CHORDS, fine, 0)
+    nearest = math.inf
+    for k in range(SUB_CHORDS):
+        nearest = min(nearest, _to_chord(fine[k], fine[k + 1], x, y, z))
+    return nearest - length * bend / (8.0 * SUB_CHORDS * SUB_CHORDS)
+
+
+@kernel
+def obstacle_at(j, t, truth):
+    """Centre of obstacle ``j`` at time ``t``, its speed from then on, and how long that speed holds: x, y, z, v, s."""
+    if truth.laws[j] == ORBIT:
+        orbit = truth.orbits[j]
+        c, s = math.cos(orbit[9] * t), math.sin(orbit[9] * t)
+        x = orbit[0] + c * orbit[3] + s * orbit[6]
+        y = orbit[1] + c * orbit[4] + s * orbit[7]
+        z = orbit[2] + c * orbit[5] + s * orbit[8]
+        return x, y, z, truth.speeds_m_s[j], math.inf
+    points = truth.points[truth.spans[j, 0] : truth.spans[j, 1]]
+    last = points.shape[0] - 1
+    if t < points[0, 0]:
+        return points[0, 1], points[0, 2], points[0, 3], 0.0, points[0, 0] - t
+    if t >= points[last, 0]:
+        return points[last, 1], points[last, 2], points[last, 3], 0.0, math.inf
+    low, high = 0, last
+    while high - low > 1:
+        middle = (low + high) // 2
+        if points[middle, 0] <= t:
+            low = middle
+        else:
+            high = middle
+    a, b = points[low], points[high]
+    span = b[0] - a[0]
+    share = (t - a[0]) / span
+    dx, dy, dz = b[1] - a[1], b[2] - a[2], b[3] - a[3]
+    speed = math.sqrt(dx * dx + dy * dy + dz * dz) / span
+    return a[1] + share * dx, a[2] + share * dy, a[3] + share * dz, speed, b[0] - t
+
+
+@kernel
+def _look(q, t, section_length, arm_radius, truth, work):
+    """Clearance at an instant; also each chord's from each obstacle, into ``work.gaps``, and the obstacles' speeds."""
+    _lay_out(q, section_length, CHORDS, work.nodes, work.bends)
+    nodes = work.nodes
+    length = section_length / CHORDS
+    smallest = math.inf
+    for j in range(truth.radii_m.shape[0]):
+        x, y, z, work.speeds[j], work.holds[j] = obstacle_at(j, t, truth)
+        reach = arm_radius + truth.radii_m[j]
+        for i in range(work.bends.shape[0]):
+            bend = work.bends[i] / CHORDS
+            pad = length * bend / 8.0
+            for k in range(CHORDS):
+                node = i * (CHORDS + 1) + k
+                gap = _to_chord(nodes[node], nodes[node + 1], x, y, z) - reach - pad
+                if gap < REFINE_RATIO * pad:
+                    gap = _to_arc(nodes[node], bend, length, x, y, z, work.fine) - reach
+                work.gaps[j, i * CHORDS + k] = gap
+                smallest = min(smallest, gap)
+    return smallest
+
+
+@kernel
+def speed_bounds(q0, q1, duration, section_length, chords, out):
+    """Bound the speed of every body point, chord by chord, on the way from ``q0`` to ``q1``: ``out`` (n * chords,)."""
+    carried, turned = 0.0, 0.0  # speed of the section's base, and of its frame's rotation
+    for i in range(q0.shape[0] // 2):
+        rate = math.hypot(q1[2 * i] - q0[2 * i], q1[2 * i + 1] - q0[2 * i + 1]) / duration
+        for k in range(chords):
+            share = (k + 1.0) / chords
+            out[i * chords + k] = carried + section_length * share * (turned + 0.5 * share * rate)
+        carried += section_length * (turned + 0.5 * rate)
+        turned += rate
+
+
+@kernel
+def _time_to_contact(work, truth, kept):
+    """A time [s] within which no clearance can fall to ``kept``, from the gaps and speeds of the last look."""
+    soonest = math.inf
+    for j in range(truth.radii_m.shape[0]):
+        for k in range(work.arm_speeds.shape[0]):
+            gap, arm_speed = work.gaps[j, k] - kept, work.arm_speeds[k]
+            # At the obstacle's largest speed for as long as it takes, or at its present one for as long as that holds.
+            by_present = min(gap / (arm_speed + work.speeds[j]), work.holds[j])
+            soonest = min(soonest, max(gap / (arm_speed + truth.speeds_m_s[j]), by_present))
+    return soonest
+
+
+@kernel
+def _interpolate(q0, q1, share, q):
+    for c in range(q.shape[0]):
+        q[c] = q0[c] + share * (q1[c] - q0[c])
+
+
+@kernel
+def look_at(times, configurations, t, section_length, arm_radius, truth):
+    """Clearance at time ``t`` of a motion that is free of lies; before its first state and after its last it rests."""
+    k = min(max(np.searchsorted(times, t, side="right") - 1, 0), times.shape[0] - 1)
+    after = min(k + 1, times.shape[0] - 1)
+    span = times[after] - times[k]
+    share = min(1.0, max(0.0, (t - times[k]) / span)) if span > 0.0 else 0.0
+    work = make_work(configurations.shape[1] // 2, truth.radii_m.shape[0])
+    _interpolate(configurations[k], configurations[after], share, work.q)
+    return _look(work.q, t, section_length, arm_radius, truth, work)
+
+
+@kernel
+def _advance(q0, q1, t0, duration, start, stop, smallest, section_length, arm_radius, truth, work):
+    """Conservative advancement over [start, stop) of the motion from (q0, t0) to (q1, t0 + duration).
+
+    Returns the time of the first contact (nan: none), the clearance at ``start`` and the smallest seen.
+    """
+    share, until = (start - t0) / duration, (stop - t0) / duration
+    at_start = math.nan
+    while share < until:
+        t = t0 + share * duration
+        _interpolate(q0, q1, share, work.q)
+        gap = _look(work.q, t, section_length, arm_radius, truth, work)
+        smallest = min(smallest, gap)
+        if math.isnan(at_start):
+            at_start = gap
+        if gap < CONTACT_M:
+            return t, at_start, smallest
+        ahead = share + _time_to_contact(work, truth, KEPT_SHARE * smallest) / duration
+        if ahead == share:
+            return t, at_start, smallest  # faster than the clock resolves: what is not proven counts as contact
+        share = ahead
+    return math.nan, at_start, smallest
+
+
+@kernel
+def contacts(times, configurations, end, section_length, arm_radius, truth):
+    """Look for contacts over [times[0], end], a motion free of lies, at whole seconds and at every instant.
+
+    Returns the time of the first contact at a whole second, of the first at any instant (nan: none), and the smallest
+    clearance seen. Once there is a contact, only whole seconds are still looked at; a contact at one of them ends it.
+    """
+    work = make_work(configurations.shape[1] // 2, truth.radii_m.shape[0])
+    swept, smallest = math.nan, math.inf
+    for k in range(times.shape[0] - 1):
+        duration = times[k + 1] - times[k]
+        if duration < SAME_TIME_S:
+            continue
+        q0, q1 = configurations[k], configurations[k + 1]
+        speed_bounds(q0, q1, duration, section_length, CHORDS, work.arm_speeds)
+        start, last = times[k], min(times[k + 1], end)
+        while start < last:
+            # Advancing starts anew at whole seconds, so that swept is never more lenient than per step.
+            stop = min(last, math.floor(start) + 1.0)
+            whole = start == math.floor(start)
+            gap = math.inf
+            if math.isnan(swept):
+                swept, gap, smallest = _advance(
+                    q0, q1, times[k], duration, start, stop, smallest, section_length, arm_radius, truth, work
+                )
+            elif whole:
+                _interpolate(q0, q1, (start - times[k]) / duration, work.q)
+                gap = _look(work.q, start, section_length, arm_radius, truth, work)
+                smallest = min(smallest, gap)
+            if whole and gap <= 0.0:
+                return start, swept, smallest
+            start = stop
+    gap = look_at(times, configurations, end, section_length, arm_radius, truth)
+    smallest = min(smallest, gap)
+    if gap < CONTACT_M and math.isnan(swept):
+        swept = end
+    return (end if gap <= 0.0 and end == math.floor(end) else math.nan), swept, smallest
+
+
+@kernel
+def first_lie(times, configurations, start, max_bend):
+    """Number of timed states before the first that cannot be, and what is wrong with that one (OK: nothing)."""
+    n = start.shape[0] // 2
+    for k in range(times.shape[0]):
+        q = configurations[k]
+        if not (math.isfinite(times[k]) and np.isfinite(q).all()):
+            return k, NOT_FINITE
+        if k == 0 and (abs(times[0]) > SAME_TIME_S or np.abs(q - start).max() > SAME_START_RAD):
+            return k, WRONG_START
+        for i in range(n):
+            if math.hypot(q[2 * i], q[2 * i + 1]) > max_bend + BEND_SLACK_RAD:
+                return k, BEND_LIMIT
+        if k > 0:
+            passed = times[k] - times[k - 1]
+            if passed < 0.0:
+                return k, BACKWARD_TIME
+            if passed < SAME_TIME_S and np.abs(q - configurations[k - 1]).max() > SAME_CONFIGURATION_RAD:
+                return k, JUMP
+    return times.shape[0], OK
+
+
+@kernel
+def arrival(times, configurations, limit, goal, tolerance, section_length):
+    """Index of the first timed state by ``limit`` whose tip is within ``tolerance`` of ``goal``; -1 if none is."""
+    nodes, bends = np.empty((configurations.shape[1], 9)), np.empty(configurations.shape[1] // 2)
+    for k in range(times.shape[0]):
+        if times[k] > limit + SAME_TIME_S:
+            return -1
+        x, y, z = _tip(configurations[k], section_length, nodes, bends)
+        if math.sqrt((x - goal[0]) ** 2 + (y - goal[1]) ** 2 + (z - goal[2]) ** 2) <= tolerance + ARRIVAL_SLACK_M:
+            return k
+    return -1
+
+
+@kernel
+def _tip(q, section_length, nodes, bends):
+    """Tip position; one chord per section suffices, since an arc's chord is exact."""
+    _lay_out(q, section_length, 1, nodes, bends)
+    last = 2 * bends.shape[0] - 1
+    return nodes[last, 0], nodes[last, 1], nodes[last, 2]
+
+
+@kernel
+def _tip_speed(q0, q1, share, step, section_length, q, nodes, bends):
+    """Tip speed per unit of share at ``share`` of the way from ``q0`` to ``q1``, as a central difference."""
+    _interpolate(q0, q1, share - step, q)
+    ax, ay, az = _tip(q, section_length, nodes, bends)
+    _interpolate(q0, q1, share + step, q)
+    bx, by, bz = _tip(q, section_length, nodes, bends)
+    return math.sqrt((bx - ax) ** 2 + (by - ay) ** 2 + (bz - az) ** 2) / (2.0 * step)
+
+
+@kernel
+def _tip_too_fast(q0, q1, until, allowed, section_length, q, nodes, bends):
+    """Share in [0, until] of the way from ``q0`` to ``q1`` at which the tip exceeds ``allowed`` [m per unit of share].
+
+    nan is a proof that it never exceeds it by more than twice the slack.
+    """
+    first, second, third, turned = 0.0, 0.0, 0.0, 0.0  # bounds on the tip's derivatives
+    for i in range(bends.shape[0]):
+        before = turned
+        turned += math.hypot(q1[2 * i] - q0[2 * i], q1[2 * i + 1] - q0[2 * i + 1])
+        first += section_length * (turned + before) / 2.0
+        second += section_length * (turned**2 + turned * before + before**2) / 3.0
+        third += section_length * (turned**3 + turned**2 * before + turned * before**2 + before**3) / 4.0
+    sure, seen = (1.0 + 2.0 * LIMIT_SLACK) * allowed, (1.0 + LIMIT_SLACK) * allowed
+    if first <= sure:
+        return math.nan
+    step = 1e-4 / max(1.0, turned)
+    error = third * step * step / 6.0
+    bow = (second * second + first * third) / 4.0  # of the squared speed over its chord, per squared share
+    share, width = 0.0, until
+    here = _tip_speed(q0, q1, 0.0, step, section_length, q, nodes, bends)
+    if here - error > seen:
+        return 0.0
+    while share < until:
+        width = min(width, until - share)
+        there = _tip_speed(q0, q1, share + width, step, section_length, q, nodes, bends)
+        if there - error > seen and width < 1e-3:
+            return share + width
+        if (max(here, there) + error) ** 2 + bow * width * width <= sure * sure:
+            share, here, width = share + width, there, 2.0 * width
+        else:
+            width *= 0.5
+    return math.nan
+
+
+@kernel
+def first_excess(times, configurations, end, section_length, max_rate, max_speed):
+    """Time by ``end`` at which a section bends faster than ``max_rate`` or the tip exceeds ``max_speed``, and which."""
+    n = configurations.shape[1] // 2
+    nodes, bends, q = np.empty((2 * n, 9)), np.empty(n), np.empty(2 * n)
+    for k in range(times.shape[0] - 1):
+        if times[k] >= end:
+            break
+        duration = times[k + 1] - times[k]
+        if duration < SAME_TIME_S:
+            continue
+        q0, q1 = configurations[k], configurations[k + 1]
+        for i in range(n):
+            change = math.hypot(q1[2 * i] - q0[2 * i], q1[2 * i + 1] - q0[2 * i + 1])
+            if change > (1.0 + LIMIT_SLACK) * max_rate * duration:
+                return times[k], BEND_RATE
+        until = min(1.0, (end - times[k]) / duration)
+        share = _tip_too_fast(q0, q1, until, max_speed * duration, section_length, q, nodes, bends)
+        if not math.isnan(share):
+            return times[k] + share * duration, TIP_SPEED
+    return math.nan, OK
