@@ -74,16 +74,12 @@ def least_durations(q, goals, section_length, bend_rate, tip_speed):
     """Shortest time [s] of the straight motion from ``q`` (2n,) to each of ``goals`` (K, 2n) at the given rates."""
     out = np.empty(goals.shape[0])
     for k in range(goals.shape[0]):
-        out[k] = max(
-            largest_bend_change(q, goals[k]) / bend_rate, fastest_tip(q, goals[k], section_length) / tip_speed
-        )
+        out[k] = max(largest_bend_change(q, goals[k]) / bend_rate, fastest_tip(q, goals[k], section_length) / tip_speed)
     return out
 
 
 @kernel
-def motion_valid(
-    q0, t0, q1, t1, section_length, arm_radius, max_bend, bend_rate, tip_speed, tolerance, world
-):
+def motion_valid(q0, t0, q1, t1, section_length, arm_radius, max_bend, bend_rate, tip_speed, tolerance, world):
     """Whether the motion goes forward in time, within bends and rates, and is free of obstacles at every instant.
 
     Cheap refusals come first: nine motions of ten that a space-time tree proposes are backward or too fast.
@@ -100,14 +96,22 @@ def motion_valid(
 
 
 @kernel
-def motions_valid(
-    before, t0, after, t1, section_length, arm_radius, max_bend, bend_rate, tip_speed, tolerance, world
-):
+def motions_valid(before, t0, after, t1, section_length, arm_radius, max_bend, bend_rate, tip_speed, tolerance, world):
     """``motion_valid`` from each of ``before`` (A, 2n) to each of ``after`` (B, 2n): (A, B)."""
     out = np.empty((before.shape[0], after.shape[0]), np.bool_)
     for a in range(before.shape[0]):
         for b in range(after.shape[0]):
             out[a, b] = motion_valid(
-                before[a], t0, after[b], t1, section_length, arm_radius, max_bend, bend_rate, tip_speed, tolerance, world
+                before[a],
+                t0,
+                after[b],
+                t1,
+                section_length,
+                arm_radius,
+                max_bend,
+                bend_rate,
+                tip_speed,
+                tolerance,
+                world,
             )
     return out

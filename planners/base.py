@@ -48,10 +48,4 @@ class ArmPlanner(ob.Planner):
         reached = distance <= self.problem.query.goal_tolerance_m
         # Without its name OMPL books the path under "Unknown".
         self.getProblemDefinition().addSolutionPath(path, not reached, distance, self.getName())
-        return ob.PlannerStatus(
-            ob.PlannerStatus.EXACT_SOLUTION if reached else ob.PlannerStatus.APPROXIMATE_SOLUTION
-        )
-
-
-
-
+        return ob.PlannerStatus(ob.PlannerStatus.EXACT_SOLUTION if reached else ob.PlannerStatus.APPROXIMATE_SOLUTION)

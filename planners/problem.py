@@ -65,7 +65,7 @@ class SpaceTimeChecker(ob.StateValidityChecker):
         self.query = query
         self.checks = 0
 
-    def isValid(self, state: ob.State) -> bool:  # noqa: N802  (OMPL's name)
+    def isValid(self, state: ob.State) -> bool:
         """Whether the state is free of the predicted obstacles."""
         return self.clearance(state) > 0.0
 
@@ -88,7 +88,7 @@ class SpaceTimeMotionValidator(ob.MotionValidator):
         self.query = query
         self.checks = 0
 
-    def checkMotion(self, start: ob.State, end: ob.State) -> bool:  # noqa: N802  (OMPL's name)
+    def checkMotion(self, start: ob.State, end: ob.State) -> bool:
         """Whether the motion, linear in bending vectors, is possible and free under the prediction."""
         dof = self.query.arm.dof
         return self.check(*read_state(start, dof), *read_state(end, dof))
@@ -130,21 +130,21 @@ class TipGoal(ob.GoalSampleableRegion):
         # Strictly inside: the audit measures the same distance with other arithmetic.
         self.setThreshold(0.999 * query.goal_tolerance_m)
 
-    def distanceGoal(self, state: ob.State) -> float:  # noqa: N802  (OMPL's name)
+    def distanceGoal(self, state: ob.State) -> float:
         """Distance of the state's tip from the goal point [m]."""
         q, _ = read_state(state, self._query.arm.dof)
         return self._query.goal_distance(q)
 
-    def sampleGoal(self, state: ob.State) -> None:  # noqa: N802  (OMPL's name)
+    def sampleGoal(self, state: ob.State) -> None:
         """Write a goal configuration at an arrival time drawn between its earliest and the planning horizon."""
         k = int(self._rng.integers(len(self._configurations)))
         write_state(state, self._configurations[k], self._rng.uniform(self._earliest_s[k], self._latest_s))
 
-    def maxSampleCount(self) -> int:  # noqa: N802  (OMPL's name)
+    def maxSampleCount(self) -> int:
         """As many as asked for, when there is a goal configuration at all."""
         return 1_000_000 if len(self._configurations) else 0
 
-    def couldSample(self) -> bool:  # noqa: N802  (OMPL's name)
+    def couldSample(self) -> bool:
         """Whether a goal configuration is known."""
         return len(self._configurations) > 0
 

@@ -1,6 +1,7 @@
 """One planner at work on one scenario: the only door through which the suite speaks to planners."""
 
 import time
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -15,7 +16,6 @@ from planners.registry import PLANNERS, PlannerSpec
 from scenarios.arm import ContinuumArm, FloatArray
 from scenarios.scenario import Scenario
 from scenarios.world import SampledWorld
-
 
 GOALS = 64
 """Goal configurations looked for per trial."""
@@ -117,7 +117,7 @@ class Session:
         return np.array([t for _, t in states]), np.array([q for q, _ in states])
 
 
-def warm_up(specs: list[PlannerSpec], arm: ContinuumArm) -> None:
+def warm_up(specs: Sequence[PlannerSpec], arm: ContinuumArm) -> None:
     """Compile every kernel and build every table that ``specs`` need, so that no timed solve does.
 
     Must run once before worker processes start: they then load both from the cache.

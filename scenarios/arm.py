@@ -31,15 +31,9 @@ class ContinuumArm(BaseModel):
     section_length_m: _Positive = Field(default=0.15, description="length of each section's backbone")
     radius_m: _Positive = Field(default=0.018, description="radius of the body around the backbone")
     max_bend_rad: float = Field(default=math.pi, gt=0, le=math.pi, description="largest bend of a section")
-    actuator_offset_m: _Positive = Field(
-        default=0.0125, description="distance of the actuators from the backbone"
-    )
-    max_bend_rate_rad_s: _Positive = Field(
-        default=0.5, description="largest rate of a section's bending vector"
-    )
-    max_tip_speed_m_s: _Positive = Field(
-        default=0.01 * math.sqrt(3.0), description="one cube diagonal per step"
-    )
+    actuator_offset_m: _Positive = Field(default=0.0125, description="distance of the actuators from the backbone")
+    max_bend_rate_rad_s: _Positive = Field(default=0.5, description="largest rate of a section's bending vector")
+    max_tip_speed_m_s: _Positive = Field(default=0.01 * math.sqrt(3.0), description="one cube diagonal per step")
 
     @property
     def dof(self) -> int:
@@ -59,29 +53,22 @@ class ContinuumArm(BaseModel):
         """
         q = np.atleast_2d(np.ascontiguousarray(configurations, dtype=np.float64))
         if q.ndim != 2 or q.shape[1] != self.dof:
-            raise ScenarioError(
-                f"configuration: found shape {np.shape(configurations)}, allowed ({self.dof},)"
-            )
+            raise ScenarioError(f"configuration: found shape {np.shape(configurations)}, allowed ({self.dof},)")
         if not np.isfinite(q).all():
-            raise ScenarioError(
-                "configuration: found a number that is not finite, allowed finite numbers [rad]"
-            )
+            raise ScenarioError("configuration: found a number that is not finite, allowed finite numbers [rad]")
         if not self.within_bends(q).all():
             bend = np.hypot(q[:, 0::2], q[:, 1::2]).max()
-            raise ScenarioError(
-                f"configuration: found a bend of {bend:.4f} rad, allowed up to {self.max_bend_rad:.4f}"
-            )
+            raise ScenarioError(f"configuration: found a bend of {bend:.4f} rad, allowed up to {self.max_bend_rad:.4f}")
         return q
 
     def within_bends(self, configurations: FloatArray) -> npt.NDArray[np.bool_]:
         """Whether every section's bend is allowed: (N, dof) [rad] -> (N,)."""
         bends = np.hypot(configurations[..., 0::2], configurations[..., 1::2])
-        allowed: npt.NDArray[np.bool_] = (bends <= self.max_bend_rad + 1e-9).all(axis=-1)
-        return allowed
+        return np.asarray((bends <= self.max_bend_rad + 1e-9).all(axis=-1))
 
     def tip(self, q: npt.ArrayLike) -> FloatArray:
         """Tip position (3,) [m] of one configuration (dof,) [rad]."""
-        return self.tips(q)[0]
+        return np.asarray(self.tips(q)[0])
 
     def tips(self, configurations: npt.ArrayLike) -> FloatArray:
         """Tip positions (N, 3) [m] of configurations (N, dof) [rad]."""
@@ -120,7 +107,7 @@ class ContinuumArm(BaseModel):
         """
         bending = np.asarray(q, dtype=np.float64).reshape(self.n_sections, 2)
         angles = 2.0 * np.pi / 3.0 * np.arange(3)
-        return -self.actuator_offset_m * bending @ np.stack([np.cos(angles), np.sin(angles)])
+        return np.asarray(-self.actuator_offset_m * bending @ np.stack([np.cos(angles), np.sin(angles)]))
 
     def bending_from_lengths(self, lengths_m: npt.ArrayLike) -> FloatArray:
         """Configuration (dof,) [rad] from length changes, shape (n, 3), or (n, 2) for the second and third alone [m].
@@ -130,9 +117,7 @@ class ContinuumArm(BaseModel):
         """
         lengths = np.asarray(lengths_m, dtype=np.float64).reshape(self.n_sections, -1)
         if lengths.shape[1] == 3 and np.abs(lengths.sum(axis=1)).max() > 1e-9:
-            raise ScenarioError(
-                "lengths_m: found length changes that do not sum to 0, allowed l1 + l2 + l3 = 0"
-            )
+            raise ScenarioError("lengths_m: found length changes that do not sum to 0, allowed l1 + l2 + l3 = 0")
         l2, l3 = lengths[:, -2], lengths[:, -1]
         u = (l2 + l3) / self.actuator_offset_m
         v = (l3 - l2) / (math.sqrt(3.0) * self.actuator_offset_m)

@@ -21,9 +21,7 @@ def clearance(arm: ContinuumArm, q: npt.ArrayLike, time_s: float, world: Sampled
         time_s: Instant at which the obstacles are taken [s].
         world: The obstacles.
     """
-    return float(
-        clearances(arm, np.atleast_2d(np.asarray(q, dtype=np.float64)), np.array([time_s]), world)[0]
-    )
+    return float(clearances(arm, np.atleast_2d(np.asarray(q, dtype=np.float64)), np.array([time_s]), world)[0])
 
 
 def clearances(
@@ -64,9 +62,7 @@ def is_motion_valid(
     Raises:
         ScenarioError: ``t1_s`` before ``t0_s``, wrong shapes, bends past the limit.
     """
-    ends = arm.check_configurations(
-        np.stack([np.asarray(q0, dtype=np.float64), np.asarray(q1, dtype=np.float64)])
-    )
+    ends = arm.check_configurations(np.stack([np.asarray(q0, dtype=np.float64), np.asarray(q1, dtype=np.float64)]))
     if not t1_s >= t0_s:
         raise ScenarioError(f"t1_s: found {t1_s}, allowed a time at or after t0_s = {t0_s}")
     share, _ = kernels.motion_clear_until(

@@ -43,9 +43,8 @@ class Orbit(BaseModel):
         e1 /= np.linalg.norm(e1)
         e2 = np.cross(axis, e1)
         angle = self.phase_rad + self.rate_rad_s * np.asarray(times_s, dtype=np.float64)
-        return np.asarray(self.center_m) + self.radius_m * (
-            np.outer(np.cos(angle), e1) + np.outer(np.sin(angle), e2)
-        )
+        offset = self.radius_m * (np.outer(np.cos(angle), e1) + np.outer(np.sin(angle), e2))
+        return np.asarray(np.asarray(self.center_m) + offset)
 
     @property
     def speed_bound_m_s(self) -> float:
@@ -65,9 +64,7 @@ class Track(BaseModel):
     @model_validator(mode="after")
     def _is_a_function_of_time(self) -> "Track":
         if len(self.times_s) != len(self.positions_m):
-            raise ValueError(
-                f"times_s has {len(self.times_s)} entries, positions_m has {len(self.positions_m)}"
-            )
+            raise ValueError(f"times_s has {len(self.times_s)} entries, positions_m has {len(self.positions_m)}")
         if (np.diff(self.times_s) <= 0).any():
             raise ValueError("times_s must increase strictly")
         return self

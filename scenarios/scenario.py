@@ -12,7 +12,6 @@ from scenarios.arm import ContinuumArm
 from scenarios.motion import FloatArray, Point
 from scenarios.obstacle import Obstacle
 
-SCHEMA_VERSION = 1
 STEP_S = 1.0
 """A step is one second (paper, section V)."""
 
@@ -28,7 +27,7 @@ class Scenario(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    schema_version: Literal[1] = SCHEMA_VERSION
+    schema_version: Literal[1] = 1
     id: _Name
     family: _Name = "custom"
     seed: int = Field(default=0, ge=0)

@@ -18,9 +18,7 @@ def split_specs(text: str) -> list[str]:
     """Split a comma-separated list of specs; commas inside brackets belong to their spec."""
     parts = [part.strip() for part in re.split(r",(?![^\[]*\])", text)]
     if not all(parts):
-        raise SpecError(
-            f"found an empty entry in {text!r}, allowed a comma-separated list of name[key=value,...]"
-        )
+        raise SpecError(f"found an empty entry in {text!r}, allowed a comma-separated list of name[key=value,...]")
     return parts
 
 

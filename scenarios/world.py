@@ -42,7 +42,7 @@ def make_world(start_s: float, step_s: float, centers_m: FloatArray, radii_m: Fl
 def sample_world(obstacles: Sequence[Obstacle], start_s: float, end_s: float, step_s: float) -> SampledWorld:
     """Sample the true motion of ``obstacles`` over [start_s, end_s], every ``step_s``."""
     count = max(2, int(np.ceil((end_s - start_s) / step_s - 1e-9)) + 1)
-    times = start_s + step_s * np.arange(count)
+    times = start_s + step_s * np.arange(count, dtype=np.float64)
     centers = np.empty((count, len(obstacles), 3))
     for j, obstacle in enumerate(obstacles):
         centers[:, j] = obstacle.position(times)

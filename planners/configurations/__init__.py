@@ -49,7 +49,8 @@ class EnumeratedSpace(NamedTuple):
 
     def center_m(self, cube: int) -> FloatArray:
         """Centre (3,) [m] of a cube."""
-        return (np.array(np.unravel_index(cube, (2 * self.half,) * 3)) - self.half + 0.5) * self.cube_m
+        index = np.array(np.unravel_index(cube, (2 * self.half,) * 3), dtype=np.float64)
+        return np.asarray((index - self.half + 0.5) * self.cube_m)
 
     def configurations(self, cube: int) -> FloatArray:
         """Configurations (N, 2n) [rad] whose tips lie in a cube."""
@@ -90,7 +91,9 @@ def enumerated_space(arm: ContinuumArm, spacing_rad: float) -> EnumeratedSpace:
     if not folder.is_dir():
         cubes = _kernels.enumerate_cubes(bends, arm.n_sections, arm.section_length_m, CUBE_M, half)
         _store(folder, *_kernels.group_by_cube(cubes, (2 * half) ** 3))
-    offsets, codes = (np.load(folder / f"{name}.npy", mmap_mode="r", allow_pickle=False) for name in ("offsets", "codes"))
+    offsets, codes = (
+        np.load(folder / f"{name}.npy", mmap_mode="r", allow_pickle=False) for name in ("offsets", "codes")
+    )
     return EnumeratedSpace(bends, arm.n_sections, CUBE_M, half, offsets, codes)
 
 

@@ -13,6 +13,7 @@ from scenarios.kernels.clearance import distance_to_arc
 from scenarios.kernels.jit import kernel
 from scenarios.kernels.kinematics import ARC_SIZE, section_arcs
 
+STAY = 13  # of the 27 moves, the one to the cube itself
 CURRENT = -1  # stands for the arm's present configuration where a code is expected
 
 
@@ -44,8 +45,8 @@ def temporal_cubes_graph(
     """Algorithm 1: the temporal cubes-graph about ``cube_now`` and its cube nearest to the goal.
 
     An edge (u, v, t, 1, d) exists when the arm can stand in u at t and in v at t + 1 without collision, that is, when
-    either cube holds a free configuration at that time; ``q_now`` counts as one of ``cube_now``'s. Edges from cubes that
-    cannot be reached by t are left out, as no path from ``cube_now`` uses them. Vertices are numbered in the box of
+    either cube holds a free configuration at that time; ``q_now`` counts as one of ``cube_now``'s. Edges from cubes
+    that cannot be reached by t are left out, as no path from ``cube_now`` uses them. Vertices number the box of
     (2 horizon + 1)^3 cubes about ``cube_now``.
 
     Returns:
@@ -53,69 +54,63 @@ def temporal_cubes_graph(
         if none is; the number of states checked.
     """
     side, width = 2 * half, 2 * horizon + 1
-    cx, cy, cz = cube_now // (side * side), cube_now // side % side, cube_now % side
+    corner = np.array([cube_now // (side * side), cube_now // side % side, cube_now % side]) - horizon
     n_cells = width * width * width
-    here = (horizon * width + horizon) * width + horizon
+    here = (n_cells - 1) // 2
     q, arcs = np.empty_like(q_now), np.empty((q_now.shape[0] // 2, ARC_SIZE))
-    room = 1024
-    u, v, t = np.empty(room, np.int64), np.empty(room, np.int64), np.empty(room, np.int64)
-    d = np.empty(room)
+    u, v, t = np.empty(1024, np.int64), np.empty(1024, np.int64), np.empty(1024, np.int64)
+    d = np.empty(1024)
     n_edges, checks = 0, 0
     frontier, following = np.empty(n_cells, np.int64), np.empty(n_cells, np.int64)
     frontier[0], n_frontier = here, 1
     nearest, nearest_distance = -1, math.inf
     for step in range(horizon):
-        known = np.zeros(n_cells, np.int8)  # at step + 1: 0 not looked at, 1 open, 2 closed
+        spheres, radii = centers[step + 1], reach[step + 1]
+        known = np.zeros(n_cells, np.int8)  # of each cube at step + 1: 0 not looked at, 1 open, 2 closed
         n_following = 0
         for f in range(n_frontier):
             cell = frontier[f]
-            x, y, z = cell // (width * width), cell // width % width, cell % width
-            for dx in range(-1, 2):
-                for dy in range(-1, 2):
-                    for dz in range(-1, 2):
-                        hops = abs(dx) + abs(dy) + abs(dz)
-                        if hops == 0 and not waiting:
-                            continue
-                        i, j, k = x + dx, y + dy, z + dz
-                        other = (i * width + j) * width + k
-                        if known[other] == 0:
-                            gi, gj, gk = cx + i - horizon, cy + j - horizon, cz + k - horizon
-                            is_open = False
-                            if 0 <= gi < side and 0 <= gj < side and 0 <= gk < side:
-                                if other == here:
-                                    is_open = is_free(q_now, section_length, centers[step + 1], reach[step + 1], arcs)
-                                    checks += 1
-                                if not is_open:
-                                    is_open, looked = first_free(
-                                        (gi * side + gj) * side + gk, offsets, codes, bends, q, section_length,
-                                        centers[step + 1], reach[step + 1], arcs,
-                                    )  # fmt: skip
-                                    checks += looked
-                            known[other] = 1 if is_open else 2
-                            if is_open:
-                                following[n_following] = other
-                                n_following += 1
-                                ex = (gi - half + 0.5) * cube_m - goal[0]
-                                ey = (gj - half + 0.5) * cube_m - goal[1]
-                                ez = (gk - half + 0.5) * cube_m - goal[2]
-                                distance = ex * ex + ey * ey + ez * ez
-                                if distance < nearest_distance - 1e-12:
-                                    nearest, nearest_distance = other, distance
-                        if known[other] == 1:
-                            if n_edges == room:
-                                room *= 2
-                                u, v, t, d = _grown(u, room), _grown(v, room), _grown(t, room), _grown(d, room)
-                            u[n_edges], v[n_edges], t[n_edges] = cell, other, step
-                            d[n_edges] = math.sqrt(hops) * cube_m
-                            n_edges += 1
+            if n_edges + 27 > d.shape[0]:
+                u, v, t, d = _doubled(u), _doubled(v), _doubled(t), _doubled(d)
+            for move in range(27):
+                if move == STAY and not waiting:
+                    continue
+                dx, dy, dz = move // 9 - 1, move // 3 % 3 - 1, move % 3 - 1
+                other = cell + (dx * width + dy) * width + dz
+                if known[other] == 0:
+                    x, y, z = other // (width * width), other // width % width, other % width
+                    cx, cy, cz = corner[0] + x, corner[1] + y, corner[2] + z
+                    is_open = other == here and is_free(q_now, section_length, spheres, radii, arcs)
+                    if not is_open and min(cx, cy, cz) >= 0 and max(cx, cy, cz) < side:
+                        cube = (cx * side + cy) * side + cz
+                        is_open, looked = first_free(
+                            cube, offsets, codes, bends, q, section_length, spheres, radii, arcs
+                        )
+                        checks += looked
+                    known[other] = 1 if is_open else 2
+                    if is_open:
+                        following[n_following] = other
+                        n_following += 1
+                        distance = math.sqrt(
+                            ((cx - half + 0.5) * cube_m - goal[0]) ** 2
+                            + ((cy - half + 0.5) * cube_m - goal[1]) ** 2
+                            + ((cz - half + 0.5) * cube_m - goal[2]) ** 2
+                        )
+                        # Equal but for rounding: the one reached first, in the order of vertices.
+                        if distance < nearest_distance - 1e-9:
+                            nearest, nearest_distance = other, distance
+                if known[other] == 1:
+                    u[n_edges], v[n_edges], t[n_edges] = cell, other, step
+                    d[n_edges] = math.sqrt(abs(dx) + abs(dy) + abs(dz)) * cube_m
+                    n_edges += 1
         frontier, following, n_frontier = following, frontier, n_following
     return u[:n_edges], v[:n_edges], t[:n_edges], d[:n_edges], nearest, checks
 
 
 @kernel
-def _grown(array, room):
-    """A copy of ``array`` with space for ``room`` entries."""
-    larger = np.empty(room, array.dtype)
+def _doubled(array):
+    """A copy of ``array`` with room for twice as many entries."""
+    larger = np.empty(2 * array.shape[0], array.dtype)
     larger[: array.shape[0]] = array
     return larger
 

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from planners.configurations import EnumeratedSpace
 from planners.cubes import _kernels
@@ -40,7 +41,7 @@ class LocalGraph(NamedTuple):
     """Vertex of the current cube."""
     target: int
     """Vertex of q_b, the reached cube nearest to the goal; -1 if no cube can be reached."""
-    cubes: FloatArray
+    cubes: npt.NDArray[np.int64]
     """Cube number of each vertex, shape ((2 h + 1)^3,)."""
     state_checks: int
 

@@ -55,4 +55,4 @@ class PotentialFieldPlanner(ArmPlanner):
                     STEP_S / SUBSTEPS, self._gains,
                 )
             )  # fmt: skip
-        return TimedPath(now_s + STEP_S / SUBSTEPS * np.arange(SUBSTEPS + 1), np.array(path))
+        return TimedPath(now_s + STEP_S / SUBSTEPS * np.arange(SUBSTEPS + 1, dtype=np.float64), np.array(path))

@@ -68,9 +68,7 @@ def add_limit_potential(q, max_bend, margin, gain, rate):
 
 
 @kernel
-def field_step(
-    q, goal, centers, radii, section_length, arm_radius, max_bend, bend_rate, tip_speed, duration, gains
-):
+def field_step(q, goal, centers, radii, section_length, arm_radius, max_bend, bend_rate, tip_speed, duration, gains):
     """Follow the field for ``duration`` [s] from ``q`` (2n,), within the arm's rates; returns the new q.
 
     ``gains``: attraction [1/s], repulsion [m^4/s], influence distance [m], actuator-limit gain and margin [rad].
@@ -90,7 +88,7 @@ def field_step(
         rho = max(distance - arm_radius - radii[j], NEAREST_M)
         if rho < influence and distance > 0.0:
             push = repulsion * (1.0 / rho - 1.0 / influence) / (rho * rho)
-            # A push past the tip's own top speed is cut by the rates below anyway; bounding it here keeps directions sane.
+            # Rates are cut below anyway; a bound here keeps one near obstacle from drowning every other term.
             push = min(push, 10.0 * tip_speed)
             position_jacobian(q, section_length, length, jacobian)
             add_task(jacobian, (point - centers[j]) * (push / distance), rate)

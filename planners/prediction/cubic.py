@@ -1,5 +1,6 @@
 """The paper's predictor: SciPy's cubic interpolation over the last five observations, extrapolated."""
 
+import numpy as np
 from scipy.interpolate import interp1d
 
 from planners.prediction.observation import Observation
@@ -23,5 +24,4 @@ class CubicPredictor(Predictor):
         """Predicted centres; see ``Predictor.positions``."""
         times, positions = observation.times_s[-HISTORY:], observation.positions_m[-HISTORY:]
         spline = interp1d(times, positions, kind="cubic", axis=0, fill_value="extrapolate", assume_sorted=True)
-        predicted: FloatArray = spline(times_s)
-        return predicted
+        return np.asarray(spline(times_s), dtype=np.float64)

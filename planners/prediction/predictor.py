@@ -4,7 +4,7 @@ from abc import ABC, abstractmethod
 
 import numpy as np
 
-from planners.prediction.observation import Observation
+from planners.prediction.observation import Observation, without_gaps
 from scenarios.arm import FloatArray
 from scenarios.world import SampledWorld, make_world
 
@@ -20,8 +20,9 @@ class Predictor(ABC):
         """Predicted centres (T, m, 3) [m] at absolute times (T,) [s], all at or after the last observation."""
 
     def predict(self, observation: Observation, horizon_s: float, step_s: float) -> SampledWorld:
-        """World from the last observation to ``horizon_s`` later, sampled every ``step_s``; at rest past ``reach_s``."""
+        """World from the last observation to ``horizon_s`` later, every ``step_s`` [s]; at rest past ``reach_s``."""
+        observation = without_gaps(observation)
         count = max(2, int(np.ceil(min(horizon_s, self.reach_s) / step_s - 1e-9)) + 1)
         now = float(observation.times_s[-1])
-        times = now + step_s * np.arange(count)
+        times = now + step_s * np.arange(count, dtype=np.float64)
         return make_world(now, step_s, self.positions(observation, times), observation.radii_m)

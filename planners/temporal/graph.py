@@ -45,7 +45,8 @@ class TemporalGraph:
 
         Args:
             n_vertices: Vertices are 0 to ``n_vertices`` - 1.
-            u, v: Start and end vertices, shape (M,).
+            u: Start vertices, shape (M,).
+            v: End vertices, shape (M,).
             t: Departures in steps, shape (M,), whole numbers.
             mu: Traversal times in steps, shape (M,), at least 1.
             d: Costs, shape (M,), not negative.
@@ -72,7 +73,7 @@ class TemporalGraph:
     def earliest_arrival(self, source: int, departures: Window, arrive_by: int) -> FloatArray:
         """Earliest arrival at each vertex of paths that leave ``source`` within ``departures``: (n,), inf if none."""
         starts = self._latest_starts(source, departures, arrive_by)
-        return np.where(starts >= 0, self._times(arrive_by), np.inf).min(axis=1, initial=np.inf)
+        return np.asarray(np.where(starts >= 0, self._times(arrive_by), np.inf).min(axis=1, initial=np.inf))
 
     def latest_departure(self, target: int, departures: Window, arrive_by: int) -> FloatArray:
         """Latest departure from each vertex of paths that reach ``target`` by ``arrive_by``: (n,), -inf if none."""
@@ -81,13 +82,13 @@ class TemporalGraph:
             self.u, self.v, self._departure, self._arrival, self.n_vertices, len(self.times), target, 0, last
         )
         inside = (self.times >= departures.first) & (self.times <= departures.last)
-        return np.where(reached & inside, self.times, -np.inf).max(axis=1, initial=-np.inf)
+        return np.asarray(np.where(reached & inside, self.times, -np.inf).max(axis=1, initial=-np.inf))
 
     def fastest(self, source: int, departures: Window, arrive_by: int) -> FloatArray:
         """Least time from departure to arrival at each vertex: (n,), inf if there is no path."""
         starts = self._latest_starts(source, departures, arrive_by)
         left = np.append(self.times, 0)[starts]  # -1 reads the 0 put at the end and is masked below
-        return np.where(starts >= 0, self._times(arrive_by) - left, np.inf).min(axis=1, initial=np.inf)
+        return np.asarray(np.where(starts >= 0, self._times(arrive_by) - left, np.inf).min(axis=1, initial=np.inf))
 
     def shortest(self, source: int, departures: Window, arrive_by: int) -> FloatArray:
         """Least cost to each vertex: (n,), inf if there is no path."""

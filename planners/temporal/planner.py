@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from planners.base import ArmPlanner
-from planners.configurations import EnumeratedSpace, enumerated_space
+from planners.configurations import enumerated_space
 from planners.cubes import LayeredGraph, ObstacleSteps, temporal_cubes_graph
 from planners.problem import SpaceTimeProblem, TimedPath
 from planners.temporal.graph import Window
@@ -37,9 +37,7 @@ class TemporalPlanner(ArmPlanner):
         """Timed configurations, one per step, towards the reachable cube nearest to the goal."""
         query = self.problem.query
         obstacles = ObstacleSteps.from_world(query.world, now_s, self._settings.horizon, query.arm.radius_m)
-        local = temporal_cubes_graph(
-            query.arm, self._space, q, query.goal_m, obstacles, self._settings.waiting
-        )
+        local = temporal_cubes_graph(query.arm, self._space, q, query.goal_m, obstacles, self._settings.waiting)
         self.state_checks += local.state_checks
         if local.target < 0:
             return None
@@ -55,4 +53,4 @@ class TemporalPlanner(ArmPlanner):
         )
         if path is None:
             return None
-        return TimedPath(now_s + STEP_S * np.arange(len(path)), path)
+        return TimedPath(now_s + STEP_S * np.arange(len(path), dtype=np.float64), path)

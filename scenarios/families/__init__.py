@@ -29,9 +29,7 @@ def parse_family(spec: str) -> tuple[str, Family]:
     return name, parse_settings(name, FAMILIES[known_name("family", name, FAMILIES)], values)
 
 
-def generate(
-    family: str, n_obstacles: int, trials: int, seed: int, arm: ContinuumArm | None = None
-) -> list[Scenario]:
+def generate(family: str, n_obstacles: int, trials: int, seed: int, arm: ContinuumArm | None = None) -> list[Scenario]:
     """Draw scenarios; number k depends on family, obstacles, seed and k alone, never on what was drawn before.
 
     A draw is rejected when the start is hit while the obstacles are observed, and for nothing else: a generator must
@@ -78,9 +76,7 @@ def _draw(name: str, settings: Family, n_obstacles: int, k: int, seed: int, arm:
         )
         if start_is_free(scenario):
             return scenario
-    raise ScenarioError(
-        f"{name}: every one of 1000 draws hits the start, allowed settings that leave it free"
-    )
+    raise ScenarioError(f"{name}: every one of 1000 draws hits the start, allowed settings that leave it free")
 
 
 def start_is_free(scenario: Scenario) -> bool:

@@ -60,6 +60,4 @@ def draw_problem(
         goal = (np.floor(goal / CUBE_M) + 0.5) * CUBE_M
         if min_distance_m <= np.linalg.norm(goal - tip) <= max_distance_m:
             return start, tip, goal
-    raise ValueError(
-        f"found no tips {min_distance_m} to {max_distance_m} m apart, allowed distances within the arm"
-    )
+    raise ValueError(f"found no tips {min_distance_m} to {max_distance_m} m apart, allowed distances within the arm")

@@ -12,12 +12,8 @@ from scenarios.obstacle import Obstacle
 class OrbitFamily(Family):
     """Ranges from which a scenario of the family is drawn; the defaults are the paper's."""
 
-    min_distance_m: float = Field(
-        default=0.15, ge=0, le=2, description="least distance from start to goal tip"
-    )
-    max_distance_m: float = Field(
-        default=0.60, gt=0, le=2, description="largest distance from start to goal tip"
-    )
+    min_distance_m: float = Field(default=0.15, ge=0, le=2, description="least distance from start to goal tip")
+    max_distance_m: float = Field(default=0.60, gt=0, le=2, description="largest distance from start to goal tip")
     min_orbit_m: float = Field(default=0.06, ge=0, le=2, description="smallest orbit radius")
     max_orbit_m: float = Field(default=0.15, gt=0, le=2, description="largest orbit radius")
     max_speed_m_s: float = Field(default=0.015, ge=0, le=1, description="largest obstacle speed")

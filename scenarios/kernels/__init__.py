@@ -1,1 +1,1 @@
-"""Compiled geometry on plain float arrays; checked public functions stand in ``scenarios.arm`` and ``scenarios.collision``."""
+"""Compiled geometry on plain float arrays; checked public functions stand in ``arm`` and ``collision``."""

@@ -73,9 +73,7 @@ def clearances(configurations, times, section_length, arm_radius, world):
     arcs, sections = np.empty((n, ARC_SIZE)), np.empty(n)
     out = np.empty(configurations.shape[0])
     for i in range(configurations.shape[0]):
-        out[i] = section_clearances(
-            configurations[i], times[i], section_length, arm_radius, world, arcs, sections
-        )
+        out[i] = section_clearances(configurations[i], times[i], section_length, arm_radius, world, arcs, sections)
     return out
 
 
@@ -88,11 +86,14 @@ def motion_clear_until(q0, t0, q1, t1, margin, tolerance, section_length, arm_ra
     most sum_{j<i} (L/2 + (i-j) L) |dq_j| + (L/2) |dq_i|: docs/audit.md derives it.
 
     Args:
-        q0, q1: Bending vectors at both ends, shape (2n,), [rad].
-        t0, t1: Times of both ends [s], t0 <= t1.
+        q0: Bending vectors at the start, shape (2n,), [rad].
+        t0: Time of the start [s].
+        q1: Bending vectors at the end, shape (2n,), [rad].
+        t1: Time of the end [s], not before t0.
         margin: Clearance to keep at every instant [m].
         tolerance: Clearance beyond the margin below which advancing stops and a collision is reported [m].
-        section_length, arm_radius: Of the arm [m].
+        section_length: Length of each section [m].
+        arm_radius: Radius of the body [m].
         world: The obstacles.
 
     Returns:

@@ -34,7 +34,8 @@ def kernel_hash() -> str:
 
 
 # Must be set before the first decoration: numba fixes a function's cache path when it is decorated.
-numba.config.CACHE_DIR = str(cache_folder() / "kernels" / kernel_hash())
+_config: Any = numba.config
+_config.CACHE_DIR = str(cache_folder() / "kernels" / kernel_hash())
 
 
 def kernel(function: Callable[..., Any]) -> Callable[..., Any]:

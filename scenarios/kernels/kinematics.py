@@ -15,8 +15,8 @@ from scenarios.kernels.jit import kernel
 # straight section is needed anywhere.
 MIN_BEND_RAD = 1e-6
 
-# One row of ``arcs``, all that a distance to the arc needs: base point 0:3, unit bending direction d 3:6, unit normal of
-# the arc's plane e 6:9, base tangent z 9:12 (d, e, z is a right-handed frame), end point 12:15, radius 15, sine and
+# One row of ``arcs``, all that a distance to the arc needs: base point 0:3, unit bending direction d 3:6, unit normal
+# of the arc's plane e 6:9, base tangent z 9:12 (d, e, z is a right-handed frame), end point 12:15, radius 15, sine and
 # cosine of the bend 16, 17.
 ARC_SIZE = 18
 
