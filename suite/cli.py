@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from suite.experiment import Experiment
 
 EXIT_USAGE = 2
+EXIT_NOTHING = 3
 EXIT_INTERRUPTED = 130
 
 app = typer.Typer(
@@ -108,15 +109,21 @@ def table(
     ] = "per_step",
 ) -> None:
     """Print the comparison of a run, finished or not."""
-    from suite import tables, text
+    from suite import text
+    from suite.pairs import compare_in_pairs
+    from suite.published import beside, published_file, read_published
     from suite.run_folder import planner_order, read_trials
+    from suite.tables import summarize
     from suite.terminal import print_summary
 
     trials = read_trials(run)
-    summary = tables.summarize(trials, planner_order(run))
+    if trials.empty:
+        _say(f"{run}: no trial has finished yet")
+        raise typer.Exit(EXIT_NOTHING)
+    summary = summarize(trials, planner_order(run))
     if against is not None:
-        summary = tables.beside(summary, tables.read_published(tables.published_file(against)))
-    pairs = None if reference is None else tables.compare_in_pairs(trials, reference, verdict)
+        summary = beside(summary, read_published(published_file(against)))
+    pairs = None if reference is None else compare_in_pairs(trials, reference, verdict)
     if format == "terminal":
         print_summary(summary)
     else:
@@ -181,7 +188,10 @@ def version() -> None:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run one command and return its exit code: 0 done, 2 usage or input error, 130 interrupted."""
+    """Run one command and return its exit code.
+
+    0 is done, 2 a usage or input error, 3 nothing to compare, 130 interrupted with everything finished saved.
+    """
     signal.signal(signal.SIGTERM, _interrupt)
     given = list(sys.argv[1:] if arguments is None else arguments)
     try:

@@ -3,42 +3,47 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Protocol
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 
 LINE_EVERY_S = 10.0
 
-
-class Advance(Protocol):
-    """Called after each finished trial with what it was."""
-
-    def __call__(self, what: str) -> None:
-        """Count one more."""
+Advance = Callable[[str], None]
+"""Called after each finished trial with the planner's label."""
 
 
 @contextmanager
 def progress(total: int) -> Iterator[Advance]:
-    """Show progress towards ``total`` trials while the block runs."""
-    console = Console(stderr=True)
+    """Show progress towards ``total`` trials while the block runs; until the first has finished, it warms up."""
+    console = Console(stderr=True, highlight=False)
     if not console.is_terminal:
         yield _Lines(console, total)
         return
-    columns = (
+    with Progress(
         TextColumn("{task.description}"),
         BarColumn(),
         MofNCompleteColumn(),
         TimeElapsedColumn(),
         TextColumn("ETA"),
-    )
-    with Progress(*columns, TimeRemainingColumn(), console=console, transient=True) as bar:
-        task = bar.add_task("trials", total=total)
+        TimeRemainingColumn(),
+        console=console,
+        transient=True,
+    ) as bar:
+        task = bar.add_task("warming up (compiles on first use)", total=total, start=False)
 
-        def advance(what: str) -> None:
-            bar.update(task, advance=1, description=what)
+        def advance(label: str) -> None:
+            bar.start_task(task)
+            bar.update(task, advance=1, description=label)
 
         yield advance
 
@@ -50,13 +55,17 @@ class _Lines:
         self._console = console
         self._total = total
         self._done = 0
-        self._started_s = self._last_s = time.monotonic()
+        self._first_s = self._last_s = 0.0
+        console.print(f"{total} trials to run; warming up (compiles on first use)")
 
-    def __call__(self, what: str) -> None:
+    def __call__(self, label: str) -> None:
+        del label  # a bar has room for it
         self._done += 1
         now_s = time.monotonic()
+        if self._done == 1:
+            self._first_s = self._last_s = now_s
         if now_s - self._last_s < LINE_EVERY_S and self._done < self._total:
             return
         self._last_s = now_s
-        left_s = (now_s - self._started_s) / self._done * (self._total - self._done)
-        self._console.print(f"{self._done}/{self._total} trials, {left_s:.0f} s to go", highlight=False)
+        left_s = (now_s - self._first_s) / max(1, self._done - 1) * (self._total - self._done)
+        self._console.print(f"{self._done}/{self._total} trials, about {left_s:.0f} s to go")

@@ -10,14 +10,17 @@ from pathlib import Path
 import pandas as pd
 
 from planners import PlannerSpec, warm_up
-from scenarios import ContinuumArm
+from scenarios import Scenario, start_is_free
+from suite.audit import audit, collides
 from suite.derived import write_derived
 from suite.episode import run_trial
 from suite.executor import Job, run_tasks
 from suite.experiment import Experiment
+from suite.journal import Journal
 from suite.manifest import make_manifest
 from suite.progress import progress
 from suite.run_folder import open_run
+from suite.trial import TrialTask
 
 DEFAULT_HANG_LIMIT_S = 300.0
 
@@ -54,27 +57,38 @@ def run_experiment(
         RunInterrupted: Stopped by the user; the next call goes on from there.
     """
     scenarios = experiment.scenarios()
-    tasks = list(experiment.tasks(scenarios))
     with open_run(folder, make_manifest(experiment, scenarios), fresh=fresh) as journal:
+        tasks = list(experiment.tasks(scenarios))
         finished = journal.finished()
         left = [task for task in tasks if task.key not in finished]
         if left:
-            prepare = partial(_prepare, experiment.specs(), list(dict.fromkeys(task.scenario.arm for task in left)))
-            job = Job(run_trial, prepare, hang_limit_s)
             try:
-                prepare()  # compiled and enumerated once, here, so that workers only have to load it
-                for library in ("OMP", "OPENBLAS", "MKL"):
-                    # Workers inherit this; threads of theirs would fight over the cores and disturb the timings.
-                    os.environ.setdefault(f"{library}_NUM_THREADS", "1")
-                with progress(len(left)) as advance:
-                    for task, result in run_tasks(job, left, workers):
-                        journal.add(task, result)
-                        advance(task.spec.label)
+                _run(left, experiment.specs(), journal, workers, hang_limit_s)
             except KeyboardInterrupt:
                 raise RunInterrupted(len(journal.finished()), len(tasks)) from None
         return write_derived(folder, journal, scenarios, experiment.planners)
 
 
-def _prepare(specs: Sequence[PlannerSpec], arms: Sequence[ContinuumArm]) -> None:
-    for arm in arms:
-        warm_up(specs, arm)
+def _run(
+    tasks: Sequence[TrialTask], specs: Sequence[PlannerSpec], journal: Journal, workers: int, hang_limit_s: float
+) -> None:
+    """Run every task and store each result as it comes."""
+    examples = {task.scenario.arm: task.scenario for task in tasks}
+    prepare = partial(_prepare, specs, list(examples.values()))
+    for library in ("OMP", "OPENBLAS", "MKL"):
+        # Workers inherit this; threads of theirs would fight over the cores and disturb the timings.
+        os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+    with progress(len(tasks)) as advance:
+        prepare()  # compiled and enumerated here, once, so that workers only have to load it
+        for task, result in run_tasks(Job(run_trial, prepare, hang_limit_s), tasks, workers):
+            journal.add(task, result)
+            advance(task.spec.label)
+
+
+def _prepare(specs: Sequence[PlannerSpec], examples: Sequence[Scenario]) -> None:
+    """Compile or load everything that a trial calls, so that no trial pays for it; one example per arm."""
+    for scenario in examples:
+        start_is_free(scenario)
+        warm_up(specs, scenario.arm)
+        audit(scenario, [0.0, 1.0], [scenario.start, scenario.start])
+        collides(scenario, scenario.start, 0.0)
