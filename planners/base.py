@@ -6,8 +6,10 @@ from collections.abc import Callable
 from ompl import base as ob
 from ompl import geometric as og
 
+from planners.cubes import EdgeFilter
 from planners.problem import SpaceTimeProblem, TimedPath, read_state, write_state
 from scenarios.arm import FloatArray
+from scenarios.scenario import STEP_S
 
 
 class ArmPlanner(ob.Planner):
@@ -19,6 +21,13 @@ class ArmPlanner(ob.Planner):
         self.problem = problem
         self.state_checks = 0
         """Configurations checked by this planner's own kernels, beside those the shared checker counts."""
+
+    def motion_filter(self, now_s: float) -> EdgeFilter | None:
+        """Which motions between two whole steps from ``now_s`` the validator allows; None where limits do not bind."""
+        if not self.problem.query.limits:
+            return None
+        check = self.problem.validator.check_all
+        return lambda k, before, after: check(before, now_s + k * STEP_S, after, now_s + (k + 1) * STEP_S)
 
     @abstractmethod
     def search(self, q: FloatArray, now_s: float, stop: Callable[[], bool]) -> TimedPath | None:

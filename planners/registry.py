@@ -6,6 +6,7 @@ from typing import Any, Literal, NamedTuple
 from ompl import base as ob
 from pydantic import BaseModel
 
+from planners.heuristics import HeuristicSettings, PurgingPlanner, WaitingPlanner
 from planners.potential_field import PotentialFieldPlanner, PotentialFieldSettings
 from planners.problem import SpaceTimeProblem
 from planners.sampling import RRTSettings, build_rrt
@@ -46,6 +47,24 @@ PLANNERS: dict[str, PlannerEntry] = {
             TemporalPlanner,
             "path",
             lambda s: float(s.horizon),
+        ),
+        PlannerEntry(
+            "h",
+            "static cube path, recomputed without the cubes found blocked",
+            "first heuristic: paper, section IV-A",
+            HeuristicSettings,
+            PurgingPlanner,
+            "path",
+            lambda _: 1.0,
+        ),
+        PlannerEntry(
+            "hs",
+            "static cube path, waiting while the next cube is blocked",
+            "second heuristic: paper, section IV-B",
+            HeuristicSettings,
+            WaitingPlanner,
+            "path",
+            lambda _: 1.0,
         ),
         PlannerEntry(
             "rrt",

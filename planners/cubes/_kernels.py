@@ -4,6 +4,7 @@ Obstacles come as ``centers`` (h + 1, m, 3) [m] and ``reach`` (h + 1, m) [m], th
 row per whole second from now on. Cubes are numbered in the dense grid of ``EnumeratedSpace``.
 """
 
+import heapq
 import math
 
 import numpy as np
@@ -205,3 +206,57 @@ def relax_layer(cost, weights):
             if through < best[b]:
                 best[b], parent[b] = through, a
     return best, parent
+
+
+@kernel
+def contains_obstacle(cube, half, cube_m, centers, radii):
+    """Whether any of the spheres (m, 3), (m,) [m] reaches into the cube."""
+    side = 2 * half
+    corner = np.array([cube // (side * side), cube // side % side, cube % side]) - half
+    for j in range(centers.shape[0]):
+        squared = 0.0
+        for k in range(3):
+            low = corner[k] * cube_m
+            outside = max(low - centers[j, k], centers[j, k] - low - cube_m, 0.0)
+            squared += outside * outside
+        if squared <= radii[j] * radii[j]:
+            return True
+    return False
+
+
+@kernel
+def static_path(start, goal, purged, offsets, half, cube_m):
+    """Shortest path of occupied cubes from ``start`` to ``goal`` in the cubes-graph without ``purged`` (side^3,).
+
+    Dijkstra's algorithm as A*, guided by the straight distance; the first of equal cubes wins by its number. Returns
+    the cubes, empty when there is no path.
+    """
+    side = 2 * half
+    gx, gy, gz = goal // (side * side), goal // side % side, goal % side
+    cost = np.full(side * side * side, np.inf)
+    parent = np.full(side * side * side, -1, np.int32)
+    cost[start] = 0.0
+    heap = [(0.0, start)]
+    while len(heap) > 0:
+        _, cube = heapq.heappop(heap)
+        if cube == goal:
+            break
+        x, y, z = cube // (side * side), cube // side % side, cube % side
+        for move in range(27):
+            i, j, k = x + move // 9 - 1, y + move // 3 % 3 - 1, z + move % 3 - 1
+            if move == STAY or min(i, j, k) < 0 or max(i, j, k) >= side:
+                continue
+            other = (i * side + j) * side + k
+            if purged[other] or offsets[other] == offsets[other + 1]:
+                continue
+            through = cost[cube] + cube_m * math.sqrt((i - x) ** 2 + (j - y) ** 2 + (k - z) ** 2)
+            if through < cost[other] - 1e-12:
+                cost[other], parent[other] = through, cube
+                left = cube_m * math.sqrt((i - gx) ** 2 + (j - gy) ** 2 + (k - gz) ** 2)
+                heapq.heappush(heap, (through + left, other))
+    if not np.isfinite(cost[goal]):
+        return np.empty(0, np.int64)
+    path = [goal]
+    while path[-1] != start:
+        path.append(np.int64(parent[path[-1]]))
+    return np.array(path)[::-1].copy()

@@ -31,6 +31,12 @@ class ObstacleSteps(NamedTuple):
             np.ascontiguousarray(world.centers_m[rows]), np.ascontiguousarray(world.radii_m[rows]) + arm_radius_m
         )
 
+    @classmethod
+    def frozen(cls, world: SampledWorld, arm_radius_m: float) -> "ObstacleSteps":
+        """Obstacles as they are now, now and a step later: the view of a planner that does not predict."""
+        centers = np.repeat(world.centers_m[:1], 2, axis=0)
+        return cls(centers, np.repeat(world.radii_m[:1], 2, axis=0) + arm_radius_m)
+
 
 class LocalGraph(NamedTuple):
     """What Algorithm 1 returns."""

@@ -47,10 +47,7 @@ class TemporalPlanner(ArmPlanner):
         vertices = [local.source, *local.graph.v[edges]]
         layered = LayeredGraph(query.arm, self._space, q, [int(local.cubes[v]) for v in vertices], obstacles)
         self.state_checks += layered.state_checks
-        check = self.problem.validator.check_all
-        path = layered.smoothest_path(
-            (lambda k, before, after: check(before, now_s + k, after, now_s + k + STEP_S)) if query.limits else None
-        )
+        path = layered.smoothest_path(self.motion_filter(now_s))
         if path is None:
             return None
         return TimedPath(now_s + STEP_S * np.arange(len(path), dtype=np.float64), path)
