@@ -18,15 +18,9 @@ REFINE_RATIO = 10.0  # too small: below this many pads
 
 CONTACT_M = 1e-4
 KEPT_SHARE = 0.75  # of the smallest clearance seen: advancing proves that no instant has less
+MAX_LOOKS = 10_000_000  # what is not proven by then counts as contact: minutes of work, for speeds beyond all reason
 
 SAME_TIME_S = 1e-9
-SAME_CONFIGURATION_RAD = 1e-9
-SAME_START_RAD = 1e-6
-BEND_SLACK_RAD = 1e-9
-ARRIVAL_SLACK_M = 1e-9
-LIMIT_SLACK = 1e-3
-
-OK, NOT_FINITE, WRONG_START, BACKWARD_TIME, JUMP, BEND_LIMIT, BEND_RATE, TIP_SPEED = range(8)
 ORBIT, TRACK = range(2)
 
 FloatArray = npt.NDArray[np.float64]
@@ -43,6 +37,7 @@ class Work(NamedTuple):
     gaps: FloatArray
     speeds: FloatArray
     holds: FloatArray
+    looks: npt.NDArray[np.int64]
 
 
 @kernel
@@ -57,6 +52,7 @@ def make_work(n, m):
         np.empty((m, n * CHORDS)),
         np.empty(m),
         np.empty(m),
+        np.zeros(1, dtype=np.int64),
     )
 
 
@@ -81,7 +77,7 @@ def _roll(start, bend, length, chords, nodes, first):
 
 
 @kernel
-def _lay_out(q, section_length, chords, nodes, bends):
+def lay_out(q, section_length, chords, nodes, bends):
     """Walk the whole backbone, ``chords`` to a section: rows of ``nodes`` (n * (chords + 1), 9), ``bends`` (n,)."""
     start = np.zeros(9)
     x, y = np.zeros(3), np.zeros(3)
@@ -100,6 +96,14 @@ def _lay_out(q, section_length, chords, nodes, bends):
             start[k], start[3 + k] = nodes[first + chords, k], nodes[first + chords, 3 + k]
             x[k] = c * nodes[first + chords, 6 + k] - s * across
             y[k] = s * nodes[first + chords, 6 + k] + c * across
+
+
+@kernel
+def tip(q, section_length, nodes, bends):
+    """Tip position; one chord per section suffices, since an arc's chord is exact."""
+    lay_out(q, section_length, 1, nodes, bends)
+    last = 2 * bends.shape[0] - 1
+    return nodes[last, 0], nodes[last, 1], nodes[last, 2]
 
 
 @kernel
@@ -124,6 +128,19 @@ def _to_arc(start, bend, length, x, y, z, fine):
 
 
 @kernel
+def _last_by(times, t):
+    """Index of the last of ``times`` (k,) that is not after ``t``; 0 if there is none."""
+    low, high = 0, times.shape[0]
+    while high - low > 1:
+        middle = (low + high) // 2
+        if times[middle] <= t:
+            low = middle
+        else:
+            high = middle
+    return low
+
+
+@kernel
 def obstacle_at(j, t, truth):
     """Centre of obstacle ``j`` at time ``t``, its speed from then on, and how long that speed holds: x, y, z, v, s."""
     if truth.laws[j] == ORBIT:
@@ -139,14 +156,8 @@ def obstacle_at(j, t, truth):
         return points[0, 1], points[0, 2], points[0, 3], 0.0, points[0, 0] - t
     if t >= points[last, 0]:
         return points[last, 1], points[last, 2], points[last, 3], 0.0, math.inf
-    low, high = 0, last
-    while high - low > 1:
-        middle = (low + high) // 2
-        if points[middle, 0] <= t:
-            low = middle
-        else:
-            high = middle
-    a, b = points[low], points[high]
+    low = _last_by(points[:, 0], t)
+    a, b = points[low], points[low + 1]
     span = b[0] - a[0]
     share = (t - a[0]) / span
     dx, dy, dz = b[1] - a[1], b[2] - a[2], b[3] - a[3]
@@ -157,7 +168,8 @@ def obstacle_at(j, t, truth):
 @kernel
 def _look(q, t, section_length, arm_radius, truth, work):
     """Clearance at an instant; also each chord's from each obstacle, into ``work.gaps``, and the obstacles' speeds."""
-    _lay_out(q, section_length, CHORDS, work.nodes, work.bends)
+    lay_out(q, section_length, CHORDS, work.nodes, work.bends)
+    work.looks[0] += 1
     nodes = work.nodes
     length = section_length / CHORDS
     smallest = math.inf
@@ -204,7 +216,7 @@ def _time_to_contact(work, truth, kept):
 
 
 @kernel
-def _interpolate(q0, q1, share, q):
+def interpolate(q0, q1, share, q):
     for c in range(q.shape[0]):
         q[c] = q0[c] + share * (q1[c] - q0[c])
 
@@ -212,12 +224,12 @@ def _interpolate(q0, q1, share, q):
 @kernel
 def look_at(times, configurations, t, section_length, arm_radius, truth):
     """Clearance at time ``t`` of a motion that is free of lies; before its first state and after its last it rests."""
-    k = min(max(np.searchsorted(times, t, side="right") - 1, 0), times.shape[0] - 1)
+    k = _last_by(times, t)
     after = min(k + 1, times.shape[0] - 1)
     span = times[after] - times[k]
     share = min(1.0, max(0.0, (t - times[k]) / span)) if span > 0.0 else 0.0
     work = make_work(configurations.shape[1] // 2, truth.radii_m.shape[0])
-    _interpolate(configurations[k], configurations[after], share, work.q)
+    interpolate(configurations[k], configurations[after], share, work.q)
     return _look(work.q, t, section_length, arm_radius, truth, work)
 
 
@@ -231,7 +243,7 @@ def _advance(q0, q1, t0, duration, start, stop, smallest, section_length, arm_ra
     at_start = math.nan
     while share < until:
         t = t0 + share * duration
-        _interpolate(q0, q1, share, work.q)
+        interpolate(q0, q1, share, work.q)
         gap = _look(work.q, t, section_length, arm_radius, truth, work)
         smallest = min(smallest, gap)
         if math.isnan(at_start):
@@ -239,8 +251,8 @@ def _advance(q0, q1, t0, duration, start, stop, smallest, section_length, arm_ra
         if gap < CONTACT_M:
             return t, at_start, smallest
         ahead = share + _time_to_contact(work, truth, KEPT_SHARE * smallest) / duration
-        if ahead == share:
-            return t, at_start, smallest  # faster than the clock resolves: what is not proven counts as contact
+        if ahead == share or work.looks[0] > MAX_LOOKS:
+            return t, at_start, smallest  # not even a tick of the clock is proven
         share = ahead
     return math.nan, at_start, smallest
 
@@ -271,7 +283,7 @@ def contacts(times, configurations, end, section_length, arm_radius, truth):
                     q0, q1, times[k], duration, start, stop, smallest, section_length, arm_radius, truth, work
                 )
             elif whole:
-                _interpolate(q0, q1, (start - times[k]) / duration, work.q)
+                interpolate(q0, q1, (start - times[k]) / duration, work.q)
                 gap = _look(work.q, start, section_length, arm_radius, truth, work)
                 smallest = min(smallest, gap)
             if whole and gap <= 0.0:
@@ -282,114 +294,3 @@ def contacts(times, configurations, end, section_length, arm_radius, truth):
     if gap < CONTACT_M and math.isnan(swept):
         swept = end
     return (end if gap <= 0.0 and end == math.floor(end) else math.nan), swept, smallest
-
-
-@kernel
-def first_lie(times, configurations, start, max_bend):
-    """Number of timed states before the first that cannot be, and what is wrong with that one (OK: nothing)."""
-    n = start.shape[0] // 2
-    for k in range(times.shape[0]):
-        q = configurations[k]
-        if not (math.isfinite(times[k]) and np.isfinite(q).all()):
-            return k, NOT_FINITE
-        if k == 0 and (abs(times[0]) > SAME_TIME_S or np.abs(q - start).max() > SAME_START_RAD):
-            return k, WRONG_START
-        for i in range(n):
-            if math.hypot(q[2 * i], q[2 * i + 1]) > max_bend + BEND_SLACK_RAD:
-                return k, BEND_LIMIT
-        if k > 0:
-            passed = times[k] - times[k - 1]
-            if passed < 0.0:
-                return k, BACKWARD_TIME
-            if passed < SAME_TIME_S and np.abs(q - configurations[k - 1]).max() > SAME_CONFIGURATION_RAD:
-                return k, JUMP
-    return times.shape[0], OK
-
-
-@kernel
-def arrival(times, configurations, limit, goal, tolerance, section_length):
-    """Index of the first timed state by ``limit`` whose tip is within ``tolerance`` of ``goal``; -1 if none is."""
-    nodes, bends = np.empty((configurations.shape[1], 9)), np.empty(configurations.shape[1] // 2)
-    for k in range(times.shape[0]):
-        if times[k] > limit + SAME_TIME_S:
-            return -1
-        x, y, z = _tip(configurations[k], section_length, nodes, bends)
-        if math.sqrt((x - goal[0]) ** 2 + (y - goal[1]) ** 2 + (z - goal[2]) ** 2) <= tolerance + ARRIVAL_SLACK_M:
-            return k
-    return -1
-
-
-@kernel
-def _tip(q, section_length, nodes, bends):
-    """Tip position; one chord per section suffices, since an arc's chord is exact."""
-    _lay_out(q, section_length, 1, nodes, bends)
-    last = 2 * bends.shape[0] - 1
-    return nodes[last, 0], nodes[last, 1], nodes[last, 2]
-
-
-@kernel
-def _tip_speed(q0, q1, share, step, section_length, q, nodes, bends):
-    """Tip speed per unit of share at ``share`` of the way from ``q0`` to ``q1``, as a central difference."""
-    _interpolate(q0, q1, share - step, q)
-    ax, ay, az = _tip(q, section_length, nodes, bends)
-    _interpolate(q0, q1, share + step, q)
-    bx, by, bz = _tip(q, section_length, nodes, bends)
-    return math.sqrt((bx - ax) ** 2 + (by - ay) ** 2 + (bz - az) ** 2) / (2.0 * step)
-
-
-@kernel
-def _tip_too_fast(q0, q1, until, allowed, section_length, q, nodes, bends):
-    """Share in [0, until] of the way from ``q0`` to ``q1`` at which the tip exceeds ``allowed`` [m per unit of share].
-
-    nan is a proof that it never exceeds it by more than twice the slack.
-    """
-    first, second, third, turned = 0.0, 0.0, 0.0, 0.0  # bounds on the tip's derivatives
-    for i in range(bends.shape[0]):
-        before = turned
-        turned += math.hypot(q1[2 * i] - q0[2 * i], q1[2 * i + 1] - q0[2 * i + 1])
-        first += section_length * (turned + before) / 2.0
-        second += section_length * (turned**2 + turned * before + before**2) / 3.0
-        third += section_length * (turned**3 + turned**2 * before + turned * before**2 + before**3) / 4.0
-    sure, seen = (1.0 + 2.0 * LIMIT_SLACK) * allowed, (1.0 + LIMIT_SLACK) * allowed
-    if first <= sure:
-        return math.nan
-    step = 1e-4 / max(1.0, turned)
-    error = third * step * step / 6.0
-    bow = (second * second + first * third) / 4.0  # of the squared speed over its chord, per squared share
-    share, width = 0.0, until
-    here = _tip_speed(q0, q1, 0.0, step, section_length, q, nodes, bends)
-    if here - error > seen:
-        return 0.0
-    while share < until:
-        width = min(width, until - share)
-        there = _tip_speed(q0, q1, share + width, step, section_length, q, nodes, bends)
-        if there - error > seen and width < 1e-3:
-            return share + width
-        if (max(here, there) + error) ** 2 + bow * width * width <= sure * sure:
-            share, here, width = share + width, there, 2.0 * width
-        else:
-            width *= 0.5
-    return math.nan
-
-
-@kernel
-def first_excess(times, configurations, end, section_length, max_rate, max_speed):
-    """Time by ``end`` at which a section bends faster than ``max_rate`` or the tip exceeds ``max_speed``, and which."""
-    n = configurations.shape[1] // 2
-    nodes, bends, q = np.empty((2 * n, 9)), np.empty(n), np.empty(2 * n)
-    for k in range(times.shape[0] - 1):
-        if times[k] >= end:
-            break
-        duration = times[k + 1] - times[k]
-        if duration < SAME_TIME_S:
-            continue
-        q0, q1 = configurations[k], configurations[k + 1]
-        for i in range(n):
-            change = math.hypot(q1[2 * i] - q0[2 * i], q1[2 * i + 1] - q0[2 * i + 1])
-            if change > (1.0 + LIMIT_SLACK) * max_rate * duration:
-                return times[k], BEND_RATE
-        until = min(1.0, (end - times[k]) / duration)
-        share = _tip_too_fast(q0, q1, until, max_speed * duration, section_length, q, nodes, bends)
-        if not math.isnan(share):
-            return times[k] + share * duration, TIP_SPEED
-    return math.nan, OK

@@ -12,6 +12,7 @@ from suite.audit._kernels import ORBIT, TRACK
 
 FloatArray = npt.NDArray[np.float64]
 
+_AT_REST_RAD_S = 1e-15  # a nanometre in an hour
 _RESAMPLING_ERROR_M = 2e-5
 _MAX_SAMPLES = 200_000
 
@@ -89,10 +90,11 @@ def _pack_law(law: Law, end_s: float) -> _Packed:
 
 def _orbit(law: Orbit) -> _Packed:
     """The circle's two amplitudes, read off the law itself at t = 0 and a quarter turn later."""
+    rate = law.rate_rad_s if abs(law.rate_rad_s) > _AT_REST_RAD_S else 0.0
+    quarter_s = 0.5 * math.pi / rate if rate else 0.0
     center = np.asarray(law.center_m)
-    quarter_s = 0.5 * math.pi / law.rate_rad_s if law.rate_rad_s != 0.0 else 0.0
     amplitudes = law.position(np.array([0.0, quarter_s])) - center
-    row = np.concatenate([center, amplitudes.reshape(-1), [law.rate_rad_s]])
+    row = np.concatenate([center, amplitudes.reshape(-1), [rate]])
     return _Packed(ORBIT, law.speed_bound_m_s, row, _NO_POINTS)
 
 

@@ -20,6 +20,13 @@ class Kind(StrEnum):
     SHORT_OF_GOAL = "short of goal"
 
 
+class Finding(NamedTuple):
+    """A violation."""
+
+    time_s: float
+    kind: Kind
+
+
 class Verdict(NamedTuple):
     """Whether a trajectory succeeds by one definition and, if not, what is wrong first."""
 

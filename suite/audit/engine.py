@@ -1,0 +1,26 @@
+"""What an engine of the audit finds on its way along a motion."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from scenarios import Scenario
+
+FloatArray = npt.NDArray[np.float64]
+
+
+class Contacts(NamedTuple):
+    """First contacts of a motion with its obstacles."""
+
+    per_step_s: float
+    """First whole second with a contact [s]; nan when there is none."""
+    swept_s: float
+    """First instant with a contact [s]; nan when there is none."""
+    min_clearance_m: float
+    """Smallest clearance seen [m]; inf without obstacles."""
+
+
+Engine = Callable[[Scenario, FloatArray, FloatArray, float], Contacts]
+"""Scenario, times (k,) [s] and configurations (k, dof) [rad] free of lies, and the instant to end at [s]."""
