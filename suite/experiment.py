@@ -149,7 +149,7 @@ def preset_fields(preset: str) -> dict[str, Any]:
 def _refuse_repeats(field: str, values: Iterable[object]) -> None:
     value, times = Counter(values).most_common(1)[0]
     if times > 1:
-        raise ValueError(f"{field}: found {value} {times} times, allowed once")
+        raise SuiteError(f"{field}: found {value} {times} times, allowed once")
 
 
 def _refuse_twins(scenarios: list[Scenario]) -> None:

@@ -9,9 +9,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from planners import PlannerSpec, warm_up
-from scenarios import Scenario, start_is_free
-from suite.audit import audit, collides
+from planners import PlannerSpec
 from suite.derived import write_derived
 from suite.episode import run_trial
 from suite.executor import Job, run_tasks
@@ -21,6 +19,7 @@ from suite.manifest import make_manifest
 from suite.progress import progress
 from suite.run_folder import open_run
 from suite.trial import TrialTask
+from suite.warm_up import warm_up_trials
 
 DEFAULT_HANG_LIMIT_S = 300.0
 
@@ -74,7 +73,7 @@ def _run(
 ) -> None:
     """Run every task and store each result as it comes."""
     examples = {task.scenario.arm: task.scenario for task in tasks}
-    prepare = partial(_prepare, specs, list(examples.values()))
+    prepare = partial(warm_up_trials, specs, list(examples.values()))
     for library in ("OMP", "OPENBLAS", "MKL"):
         # Workers inherit this; threads of theirs would fight over the cores and disturb the timings.
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")
@@ -83,12 +82,3 @@ def _run(
         for task, result in run_tasks(Job(run_trial, prepare, hang_limit_s), tasks, workers):
             journal.add(task, result)
             advance(task.spec.label)
-
-
-def _prepare(specs: Sequence[PlannerSpec], examples: Sequence[Scenario]) -> None:
-    """Compile or load everything that a trial calls, so that no trial pays for it; one example per arm."""
-    for scenario in examples:
-        start_is_free(scenario)
-        warm_up(specs, scenario.arm)
-        audit(scenario, [0.0, 1.0], [scenario.start, scenario.start])
-        collides(scenario, scenario.start, 0.0)

@@ -35,17 +35,12 @@ def read_trials_csv(file: Path) -> pd.DataFrame:
     Raises:
         SuiteError: The file cannot be read, or a column is missing or holds something else than it should.
     """
+    dtypes = {column.name: column.dtype for column in COLUMNS}
     try:
-        text = pd.read_csv(file, dtype="string", keep_default_na=False, na_values=[""])
+        frame = pd.read_csv(file, dtype=dtypes, keep_default_na=False, na_values=[""])
     except (OSError, ValueError) as error:
         raise SuiteError(f"{file}: cannot be read: {error}") from None
-    missing = [name for name in COLUMN_NAMES if name not in text.columns]
+    missing = [name for name in COLUMN_NAMES if name not in frame.columns]
     if missing:
         raise SuiteError(f"{file}: found no column {missing[0]}, a table of trials has one")
-    frame = pd.DataFrame(index=text.index)
-    for column in COLUMNS:
-        try:
-            frame[column.name] = text[column.name].astype(column.dtype)
-        except (TypeError, ValueError) as error:
-            raise SuiteError(f"{file}: {column.name}: {error}, allowed: {column.dtype}") from None
-    return frame
+    return frame[list(COLUMN_NAMES)]

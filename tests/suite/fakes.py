@@ -64,3 +64,7 @@ def behave(task: TrialTask) -> TrialResult:
         "n_solves": int(rng.integers(1, 9)),
     }
     return TrialResult(trial_row(task, measured), np.arange(3.0), rng.normal(size=(3, 6)))
+
+
+def prepare_nothing(specs: object, examples: object) -> None:
+    pass
