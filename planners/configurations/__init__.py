@@ -18,7 +18,7 @@ from planners.configurations import _kernels
 from scenarios.arm import ContinuumArm, FloatArray
 from scenarios.errors import ScenarioError
 from scenarios.families.base import CUBE_M
-from scenarios.kernels.jit import cache_folder, kernel_hash
+from scenarios.kernels.jit import cache_folder, source_hash
 
 MAX_CONFIGURATIONS = 100_000_000
 
@@ -34,6 +34,8 @@ class EnumeratedSpace(NamedTuple):
 
     bends_rad: FloatArray
     """The lattice of bending vectors of one section, shape (B, 2), [rad]."""
+    arc_table: FloatArray
+    """Cosine and sine of theta, arc radius [m], sine and cosine of phi of every bend, shape (B, 5)."""
     n_sections: int
     cube_m: float
     half: int
@@ -86,15 +88,17 @@ def enumerated_space(arm: ContinuumArm, spacing_rad: float) -> EnumeratedSpace:
         )
     # One cube to spare: a tip on the far face of the last cube still has a number.
     half = math.ceil(arm.length_m / CUBE_M) + 1
-    key = f"{kernel_hash()}/{bends.tobytes().hex()}/{arm.n_sections}/{arm.section_length_m}/{CUBE_M}"
+    key = f"{source_hash(Path(_kernels.__file__))}/{bends.tobytes().hex()}/{arm.n_sections}/{arm.section_length_m}/{CUBE_M}"
     folder = cache_folder() / "configurations" / hashlib.sha256(key.encode()).hexdigest()[:16]
     if not folder.is_dir():
         cubes = _kernels.enumerate_cubes(bends, arm.n_sections, arm.section_length_m, CUBE_M, half)
         _store(folder, *_kernels.group_by_cube(cubes, (2 * half) ** 3))
+    # Mapped, not read: worker processes share the pages. Kernels want plain arrays.
     offsets, codes = (
-        np.load(folder / f"{name}.npy", mmap_mode="r", allow_pickle=False) for name in ("offsets", "codes")
+        np.asarray(np.load(folder / f"{name}.npy", mmap_mode="r", allow_pickle=False)) for name in ("offsets", "codes")
     )
-    return EnumeratedSpace(bends, arm.n_sections, CUBE_M, half, offsets, codes)
+    table = _kernels.arc_table(bends, arm.section_length_m)
+    return EnumeratedSpace(bends, table, arm.n_sections, CUBE_M, half, offsets, codes)
 
 
 def _store(folder: Path, offsets: IntArray, codes: IntArray) -> None:

@@ -1,7 +1,7 @@
 """Algorithm 1 of the paper and the layered graph, over an enumerated configuration space.
 
 Obstacles come as ``centers`` (h + 1, m, 3) [m] and ``reach`` (h + 1, m) [m], the obstacle's radius plus the arm's, one
-row per whole second from now on. Cubes are numbered in the dense grid of ``EnumeratedSpace``.
+row per whole second from now on. ``space`` is an ``EnumeratedSpace``, in whose dense grid cubes are numbered.
 """
 
 import heapq
@@ -9,103 +9,108 @@ import math
 
 import numpy as np
 
-from planners.configurations._kernels import decode
-from scenarios.kernels.clearance import distance_to_arc
+from planners.configurations._kernels import FREE, HIT, UNKNOWN, is_code_free, is_free, memo_size
 from scenarios.kernels.jit import kernel
-from scenarios.kernels.kinematics import ARC_SIZE, section_arcs
+from scenarios.kernels.kinematics import ARC_SIZE
 
 STAY = 13  # of the 27 moves, the one to the cube itself
 CURRENT = -1  # stands for the arm's present configuration where a code is expected
 
 
 @kernel
-def is_free(q, section_length, centers, reach, arcs):
-    """Whether the arm at ``q`` touches none of the spheres ``centers`` (m, 3) within ``reach`` (m,) of its backbone."""
-    section_arcs(q, section_length, arcs)
-    for i in range(arcs.shape[0]):
-        for j in range(centers.shape[0]):
-            if distance_to_arc(arcs[i], centers[j, 0], centers[j, 1], centers[j, 2]) <= reach[j]:
-                return False
-    return True
+def cube_is_open(cube, space, centers, reach, memo, arcs):
+    """Whether some enumerated configuration of ``cube`` is free, and the number looked at."""
+    first, end = space.offsets[cube], space.offsets[cube + 1]
+    for k in range(first, end):
+        if is_code_free(space.codes[k], space.n_sections, space.arc_table, centers, reach, memo, arcs):
+            return True, k - first + 1
+    return False, end - first
 
 
 @kernel
-def first_free(cube, offsets, codes, bends, q, section_length, centers, reach, arcs):
-    """Whether some enumerated configuration of ``cube`` is free, and the number looked at; ``q`` is work space."""
-    for k in range(offsets[cube], offsets[cube + 1]):
-        decode(codes[k], bends, q)
-        if is_free(q, section_length, centers, reach, arcs):
-            return True, k - offsets[cube] + 1
-    return False, offsets[cube + 1] - offsets[cube]
-
-
-@kernel
-def temporal_cubes_graph(
-    q_now, cube_now, horizon, waiting, offsets, codes, bends, half, cube_m, section_length, centers, reach, goal
-):
-    """Algorithm 1: the temporal cubes-graph about ``cube_now`` and its cube nearest to the goal.
+def temporal_cubes_graph(q_now, cube_now, goal_cube, horizon, waiting, space, section_length, centers, reach):
+    """Algorithm 1: the temporal cubes-graph about ``cube_now`` as far as it leads to q_b, and q_b.
 
     An edge (u, v, t, 1, d) exists when the arm can stand in u at t and in v at t + 1 without collision, that is, when
-    either cube holds a free configuration at that time; ``q_now`` counts as one of ``cube_now``'s. Edges from cubes
-    that cannot be reached by t are left out, as no path from ``cube_now`` uses them. Vertices number the box of
-    (2 horizon + 1)^3 cubes about ``cube_now``.
+    either cube holds a free configuration at that time; ``q_now`` counts as one of ``cube_now``'s. Candidates for q_b
+    are tried from the nearest to the goal outwards, each with the edges on which a path to it can lie: those from cubes
+    reached by t to cubes from which it is still within the hops that are left. Whether a cube is open is found out when
+    first asked. Vertices number the box of (2 horizon + 1)^3 cubes about ``cube_now``.
 
     Returns:
-        u, v, t (M,) int64 in order of t; d (M,) [m]; the vertex nearest to ``goal`` (3,) [m] among those reached, -1
-        if none is; the number of states checked.
+        u, v, t (M,) int64 in order of t; d (M,) [m]; the vertex of q_b, -1 if no cube can be reached; the number of
+        states checked.
     """
-    side, width = 2 * half, 2 * horizon + 1
-    corner = np.array([cube_now // (side * side), cube_now // side % side, cube_now % side]) - horizon
+    side, width = 2 * space.half, 2 * horizon + 1
     n_cells = width * width * width
     here = (n_cells - 1) // 2
-    q, arcs = np.empty_like(q_now), np.empty((q_now.shape[0] // 2, ARC_SIZE))
+    cubes, order = _box_by_distance(cube_now, goal_cube, horizon, side)
+    known = np.zeros((horizon, n_cells), np.int8)  # whether each cube is open at step + 1
+    memo = np.zeros((horizon, memo_size(space.bends_rad.shape[0], space.n_sections)), np.int8)
+    seen = np.zeros(n_cells, np.int64)  # the last round of the search that came to each cube
+    frontier, following = np.empty(n_cells, np.int64), np.empty(n_cells, np.int64)
+    arcs = np.empty((space.n_sections, ARC_SIZE))
     u, v, t = np.empty(1024, np.int64), np.empty(1024, np.int64), np.empty(1024, np.int64)
     d = np.empty(1024)
-    n_edges, checks = 0, 0
-    frontier, following = np.empty(n_cells, np.int64), np.empty(n_cells, np.int64)
-    frontier[0], n_frontier = here, 1
-    nearest, nearest_distance = -1, math.inf
-    for step in range(horizon):
-        spheres, radii = centers[step + 1], reach[step + 1]
-        known = np.zeros(n_cells, np.int8)  # of each cube at step + 1: 0 not looked at, 1 open, 2 closed
-        n_following = 0
-        for f in range(n_frontier):
-            cell = frontier[f]
-            if n_edges + 27 > d.shape[0]:
-                u, v, t, d = _doubled(u), _doubled(v), _doubled(t), _doubled(d)
-            for move in range(27):
-                if move == STAY and not waiting:
-                    continue
-                dx, dy, dz = move // 9 - 1, move // 3 % 3 - 1, move % 3 - 1
-                other = cell + (dx * width + dy) * width + dz
-                if known[other] == 0:
-                    x, y, z = other // (width * width), other // width % width, other % width
-                    cx, cy, cz = corner[0] + x, corner[1] + y, corner[2] + z
-                    is_open = other == here and is_free(q_now, section_length, spheres, radii, arcs)
-                    if not is_open and min(cx, cy, cz) >= 0 and max(cx, cy, cz) < side:
-                        cube = (cx * side + cy) * side + cz
-                        is_open, looked = first_free(
-                            cube, offsets, codes, bends, q, section_length, spheres, radii, arcs
-                        )
-                        checks += looked
-                    known[other] = 1 if is_open else 2
-                    if is_open:
-                        following[n_following] = other
-                        n_following += 1
-                        distance = math.sqrt(
-                            ((cx - half + 0.5) * cube_m - goal[0]) ** 2
-                            + ((cy - half + 0.5) * cube_m - goal[1]) ** 2
-                            + ((cz - half + 0.5) * cube_m - goal[2]) ** 2
-                        )
-                        # Equal but for rounding: the one reached first, in the order of vertices.
-                        if distance < nearest_distance - 1e-9:
-                            nearest, nearest_distance = other, distance
-                if known[other] == 1:
-                    u[n_edges], v[n_edges], t[n_edges] = cell, other, step
-                    d[n_edges] = math.sqrt(abs(dx) + abs(dy) + abs(dz)) * cube_m
-                    n_edges += 1
-        frontier, following, n_frontier = following, frontier, n_following
-    return u[:n_edges], v[:n_edges], t[:n_edges], d[:n_edges], nearest, checks
+    checks, rounds = 0, 0
+    for candidate in order:
+        gx, gy, gz = candidate // (width * width), candidate // width % width, candidate % width
+        n_edges, reached = 0, False
+        frontier[0], n_frontier = here, 1
+        for step in range(horizon):
+            hops_left = horizon - step - 1
+            n_following = 0
+            rounds += 1
+            for f in range(n_frontier):
+                cell = frontier[f]
+                x, y, z = cell // (width * width), cell // width % width, cell % width
+                if n_edges + 27 > d.shape[0]:
+                    u, v, t, d = _doubled(u), _doubled(v), _doubled(t), _doubled(d)
+                for move in range(27):
+                    dx, dy, dz = move // 9 - 1, move // 3 % 3 - 1, move % 3 - 1
+                    if max(abs(x + dx - gx), abs(y + dy - gy), abs(z + dz - gz)) > hops_left:
+                        continue
+                    if move == STAY and not waiting:
+                        continue
+                    other = cell + (dx * width + dy) * width + dz
+                    if known[step, other] == UNKNOWN:
+                        spheres, radii = centers[step + 1], reach[step + 1]
+                        is_open = other == here and is_free(q_now, section_length, spheres, radii, arcs)
+                        if not is_open and cubes[other] >= 0:
+                            is_open, looked = cube_is_open(cubes[other], space, spheres, radii, memo[step], arcs)
+                            checks += looked
+                        known[step, other] = FREE if is_open else HIT
+                    if known[step, other] == FREE:
+                        u[n_edges], v[n_edges], t[n_edges] = cell, other, step
+                        d[n_edges] = math.sqrt(abs(dx) + abs(dy) + abs(dz)) * space.cube_m
+                        n_edges += 1
+                        reached = reached or other == candidate
+                        if seen[other] != rounds:
+                            seen[other] = rounds
+                            following[n_following] = other
+                            n_following += 1
+            frontier, following, n_frontier = following, frontier, n_following
+        if reached:
+            return u[:n_edges], v[:n_edges], t[:n_edges], d[:n_edges], candidate, checks
+    return u[:0], v[:0], t[:0], d[:0], -1, checks
+
+
+@kernel
+def _box_by_distance(cube_now, goal_cube, horizon, side):
+    """Cube numbers of the box about ``cube_now``, -1 off the grid, and its vertices from the goal outwards.
+
+    Distances are compared as whole numbers of cubes squared, so equal ones are equal and the lower vertex comes first.
+    """
+    width = 2 * horizon + 1
+    x, y, z = cube_now // (side * side) - horizon, cube_now // side % side - horizon, cube_now % side - horizon
+    gx, gy, gz = goal_cube // (side * side), goal_cube // side % side, goal_cube % side
+    cubes, squared = np.empty(width**3, np.int64), np.empty(width**3, np.int64)
+    for cell in range(width**3):
+        i, j, k = x + cell // (width * width), y + cell // width % width, z + cell % width
+        inside = min(i, j, k) >= 0 and max(i, j, k) < side
+        cubes[cell] = (i * side + j) * side + k if inside else -1
+        squared[cell] = (i - gx) ** 2 + (j - gy) ** 2 + (k - gz) ** 2
+    return cubes, np.argsort(squared, kind="mergesort")
 
 
 @kernel
@@ -141,22 +146,20 @@ def change_table(bends):
 
 
 @kernel
-def free_layer(cube, with_current, q_now, offsets, codes, bends, section_length, centers, reach):
+def free_layer(cube, with_current, q_now, space, section_length, centers, reach):
     """Free configurations of ``cube`` as codes, CURRENT first where asked for and free, and the number looked at."""
-    out = np.empty(offsets[cube + 1] - offsets[cube] + 1, np.int64)
-    q, arcs = np.empty_like(q_now), np.empty((q_now.shape[0] // 2, ARC_SIZE))
-    n, checks = 0, 0
-    if with_current:
-        checks += 1
-        if is_free(q_now, section_length, centers, reach, arcs):
-            out[0], n = CURRENT, 1
-    for k in range(offsets[cube], offsets[cube + 1]):
-        decode(codes[k], bends, q)
-        checks += 1
-        if is_free(q, section_length, centers, reach, arcs):
-            out[n] = codes[k]
+    first, end = space.offsets[cube], space.offsets[cube + 1]
+    out = np.empty(end - first + 1, np.int64)
+    arcs = np.empty((space.n_sections, ARC_SIZE))
+    memo = np.zeros(memo_size(space.bends_rad.shape[0], space.n_sections), np.int8)
+    n = 0
+    if with_current and is_free(q_now, section_length, centers, reach, arcs):
+        out[0], n = CURRENT, 1
+    for k in range(first, end):
+        if is_code_free(space.codes[k], space.n_sections, space.arc_table, centers, reach, memo, arcs):
+            out[n] = space.codes[k]
             n += 1
-    return out[:n], checks
+    return out[:n], end - first + (1 if with_current else 0)
 
 
 @kernel

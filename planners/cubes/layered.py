@@ -43,9 +43,14 @@ class LayeredGraph:
         self.layers = [np.array([_kernels.CURRENT])]
         for step, cube in enumerate(cubes[1:], start=1):
             layer, checks = _kernels.free_layer(
-                cube, cube == cubes[0], q, space.offsets, space.codes, space.bends_rad,
-                arm.section_length_m, obstacles.centers_m[step], obstacles.reach_m[step],
-            )  # fmt: skip
+                cube,
+                cube == cubes[0],
+                q,
+                space,
+                arm.section_length_m,
+                obstacles.centers_m[step],
+                obstacles.reach_m[step],
+            )
             self.layers.append(layer)
             self.state_checks += int(checks)
 

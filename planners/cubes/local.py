@@ -75,11 +75,17 @@ def temporal_cubes_graph(
     """
     horizon = len(obstacles.centers_m) - 1
     cube_now = space.cube_of(arm.tip(q))
-    goal_center = space.center_m(space.cube_of(goal_m))
     u, v, t, d, target, checks = _kernels.temporal_cubes_graph(
-        q, cube_now, horizon, waiting, space.offsets, space.codes, space.bends_rad, space.half, space.cube_m,
-        arm.section_length_m, obstacles.centers_m, obstacles.reach_m, goal_center,
-    )  # fmt: skip
+        q,
+        cube_now,
+        space.cube_of(goal_m),
+        horizon,
+        waiting,
+        space,
+        arm.section_length_m,
+        obstacles.centers_m,
+        obstacles.reach_m,
+    )
     width, side = 2 * horizon + 1, 2 * space.half
     hops = np.arange(-horizon, horizon + 1)
     cubes = cube_now + ((hops[:, None, None] * side + hops[:, None]) * side + hops).reshape(-1)

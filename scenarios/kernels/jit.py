@@ -1,10 +1,12 @@
 """The one numba decorator of the house.
 
 Numba's file cache looks only at the file that holds a function: an edit in a callee elsewhere leaves the caller's
-stale machine code in use. The cache folder is therefore named by a hash of every kernel source, so that any edit
-starts a fresh folder.
+stale machine code in use. The cache folder of a kernel is therefore named by a hash of its file and of every file of
+ours that it imports, directly or not.
 """
 
+import ast
+import functools
 import hashlib
 import os
 from collections.abc import Callable
@@ -15,7 +17,6 @@ import numba
 import platformdirs
 
 _ROOT = Path(__file__).resolve().parents[2]
-_KERNEL_SOURCES = ("scenarios/kernels/*.py", "planners/**/_kernels.py", "suite/**/_kernels.py")
 
 
 def cache_folder() -> Path:
@@ -24,18 +25,29 @@ def cache_folder() -> Path:
     return Path(override) if override else Path(platformdirs.user_cache_dir("continuum-arm-suite"))
 
 
-def kernel_hash() -> str:
-    """Hash of all kernel sources and of numba's version, 16 hexadecimal digits."""
+@functools.lru_cache
+def source_hash(file: Path) -> str:
+    """Hash of a source file, of all files of this project that it imports, and of numba's version: 16 hex digits."""
     digest = hashlib.sha256(numba.__version__.encode())
-    for pattern in _KERNEL_SOURCES:
-        for source in sorted(_ROOT.glob(pattern)):
-            digest.update(source.read_bytes())
+    for source in sorted(_closure(file)):
+        digest.update(source.read_bytes())
     return digest.hexdigest()[:16]
 
 
-# Must be set before the first decoration: numba fixes a function's cache path when it is decorated.
-_config: Any = numba.config
-_config.CACHE_DIR = str(cache_folder() / "kernels" / kernel_hash())
+def _closure(file: Path) -> set[Path]:
+    """The file and every file of this project reachable from it by imports."""
+    found: set[Path] = set()
+    pending = {file.resolve()}
+    while pending:
+        source = pending.pop()
+        found.add(source)
+        for node in ast.walk(ast.parse(source.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom) and node.module:
+                module = _ROOT.joinpath(*node.module.split("."))
+                names = [module / alias.name for alias in node.names]  # ``from package import module``
+                files = [module / "__init__.py", *(path.with_suffix(".py") for path in (module, *names))]
+                pending |= {path for path in files if path.is_file()} - found
+    return found
 
 
 def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -43,5 +55,8 @@ def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
 
     No ``fastmath``: it breaks NaN checks and lets verdicts differ between machines.
     """
+    # Numba fixes a function's cache path when it decorates the function.
+    config: Any = numba.config
+    config.CACHE_DIR = str(cache_folder() / "kernels" / source_hash(Path(function.__code__.co_filename)))
     compiled: Callable[..., Any] = numba.njit(cache=True, fastmath=False, error_model="numpy")(function)
     return compiled

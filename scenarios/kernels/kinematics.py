@@ -17,8 +17,36 @@ MIN_BEND_RAD = 1e-6
 
 # One row of ``arcs``, all that a distance to the arc needs: base point 0:3, unit bending direction d 3:6, unit normal
 # of the arc's plane e 6:9, base tangent z 9:12 (d, e, z is a right-handed frame), end point 12:15, radius 15, sine and
-# cosine of the bend 16, 17.
-ARC_SIZE = 18
+# cosine of the bend 16, 17, cosine and sine of theta 18, 19.
+ARC_SIZE = 20
+
+
+@kernel
+def place_section(arcs, i, c, s, radius, sin, cos):
+    """Lay out section ``i`` of ``arcs`` after section i - 1, from its theta (cosine, sine), radius [m] and bend."""
+    row = arcs[i]
+    if i == 0:
+        row[0], row[1], row[2] = 0.0, 0.0, 0.0
+        row[3], row[4], row[5] = c, s, 0.0
+        row[6], row[7], row[8] = -s, c, 0.0
+        row[9], row[10], row[11] = 0.0, 0.0, 1.0
+    else:
+        # The end frame is the base frame turned by the bend about the arc's normal e, which carries no twist, so the
+        # next direction differs from this one's by the difference of the thetas.
+        last = arcs[i - 1]
+        bent_sin, bent_cos = last[16], last[17]
+        turn_cos, turn_sin = c * last[18] + s * last[19], s * last[18] - c * last[19]
+        for k in range(3):
+            d, e, z = last[3 + k], last[6 + k], last[9 + k]
+            t = bent_cos * d - bent_sin * z
+            row[k] = last[12 + k]
+            row[3 + k] = turn_cos * t + turn_sin * e
+            row[6 + k] = turn_cos * e - turn_sin * t
+            row[9 + k] = bent_cos * z + bent_sin * d
+    a, b = radius * (1.0 - cos), radius * sin
+    for k in range(3):
+        row[12 + k] = row[k] + a * row[3 + k] + b * row[9 + k]
+    row[15], row[16], row[17], row[18], row[19] = radius, sin, cos, c, s
 
 
 @kernel
@@ -30,10 +58,6 @@ def section_arcs(q, section_length, arcs):
         section_length: Length of each section [m].
         arcs: Output, shape (n, ARC_SIZE).
     """
-    px, py, pz = 0.0, 0.0, 0.0
-    xx, xy, xz = 1.0, 0.0, 0.0
-    yx, yy, yz = 0.0, 1.0, 0.0
-    zx, zy, zz = 0.0, 0.0, 1.0
     for i in range(arcs.shape[0]):
         u, v = q[2 * i], q[2 * i + 1]
         bend = math.sqrt(u * u + v * v)
@@ -42,24 +66,7 @@ def section_arcs(q, section_length, arcs):
             c, s = 1.0, 0.0
         else:
             c, s = u / bend, v / bend
-        radius = section_length / bend
-        sin, cos = math.sin(bend), math.cos(bend)
-        dx, dy, dz = c * xx + s * yx, c * xy + s * yy, c * xz + s * yz
-        ex, ey, ez = c * yx - s * xx, c * yy - s * xy, c * yz - s * xz
-        a, b = radius * (1.0 - cos), radius * sin
-        row = arcs[i]
-        row[0], row[1], row[2] = px, py, pz
-        row[3], row[4], row[5] = dx, dy, dz
-        row[6], row[7], row[8] = ex, ey, ez
-        row[9], row[10], row[11] = zx, zy, zz
-        px, py, pz = px + a * dx + b * zx, py + a * dy + b * zy, pz + a * dz + b * zz
-        row[12], row[13], row[14] = px, py, pz
-        row[15], row[16], row[17] = radius, sin, cos
-        # The end frame: the base frame turned by the bend about the arc plane's normal, which carries no twist.
-        tx, ty, tz = cos * dx - sin * zx, cos * dy - sin * zy, cos * dz - sin * zz
-        zx, zy, zz = cos * zx + sin * dx, cos * zy + sin * dy, cos * zz + sin * dz
-        xx, xy, xz = c * tx - s * ex, c * ty - s * ey, c * tz - s * ez
-        yx, yy, yz = s * tx + c * ex, s * ty + c * ey, s * tz + c * ez
+        place_section(arcs, i, c, s, section_length / bend, math.sin(bend), math.cos(bend))
 
 
 @kernel
