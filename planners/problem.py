@@ -5,6 +5,7 @@ facts behind the shape of this file: the checker and the validator must not hold
 leaks through C++), callbacks must return a real ``bool``, and an element-wise read is the cheapest way out of a state.
 """
 
+import functools
 import math
 from typing import NamedTuple
 
@@ -13,6 +14,8 @@ import numpy.typing as npt
 from ompl import base as ob
 
 from planners import _kernels
+from planners.goals import GoalConfigurations
+from planners.prediction import Prediction
 from scenarios.arm import ContinuumArm, FloatArray
 from scenarios.collision import CONTACT_TOLERANCE_M
 from scenarios.world import SampledWorld
@@ -34,8 +37,10 @@ class Query(NamedTuple):
     goal_m: FloatArray
     """Goal point of the tip, shape (3,), [m]."""
     goal_tolerance_m: float
+    prediction: Prediction
+    """The obstacles as predicted, with error bounds."""
     world: SampledWorld
-    """The obstacles as predicted."""
+    """The same for collision checks, grown by the margin that the planner's registry entry asks for."""
     limits: bool
     """Whether planners whose paths may otherwise jump in shape must keep to what the motion validator allows."""
 
@@ -115,16 +120,16 @@ class TipGoal(ob.GoalSampleableRegion):
         self,
         si: ob.SpaceInformation,
         query: Query,
-        configurations: FloatArray,
-        earliest_s: FloatArray,
+        goals: GoalConfigurations,
+        start: tuple[FloatArray, float],
         latest_s: float,
         rng: np.random.Generator,
     ) -> None:
-        """Offer ``configurations`` (K, dof) [rad], each arriving no earlier than ``earliest_s`` (K,) [s]."""
+        """Offer ``goals`` to planners that sample, arriving from ``start`` (q, time) no earlier than rates allow."""
         super().__init__(si)
         self._query = query
-        self._configurations = configurations
-        self._earliest_s = earliest_s
+        self._goals = goals
+        self._start = start
         self._latest_s = latest_s
         self._rng = rng
         # Strictly inside: the audit measures the same distance with other arithmetic.
@@ -137,16 +142,30 @@ class TipGoal(ob.GoalSampleableRegion):
 
     def sampleGoal(self, state: ob.State) -> None:
         """Write a goal configuration at an arrival time drawn between its earliest and the planning horizon."""
-        k = int(self._rng.integers(len(self._configurations)))
-        write_state(state, self._configurations[k], self._rng.uniform(self._earliest_s[k], self._latest_s))
+        configurations, earliest_s = self._reachable
+        k = int(self._rng.integers(len(configurations)))
+        write_state(state, configurations[k], self._rng.uniform(earliest_s[k], self._latest_s))
 
     def maxSampleCount(self) -> int:
         """As many as asked for, when there is a goal configuration at all."""
-        return 1_000_000 if len(self._configurations) else 0
+        return 1_000_000 if self.couldSample() else 0
 
     def couldSample(self) -> bool:
         """Whether a goal configuration is known."""
-        return len(self._configurations) > 0
+        return len(self._reachable[0]) > 0
+
+    @functools.cached_property
+    def _reachable(self) -> tuple[FloatArray, FloatArray]:
+        """Goal configurations (K, dof) [rad] that can be reached in time, and how early each can (K,) [s].
+
+        Found out when first asked: many planners never sample the goal.
+        """
+        arm, (q, now_s) = self._query.arm, self._start
+        earliest_s = now_s + _kernels.least_durations(
+            q, self._goals.configurations, arm.section_length_m, arm.max_bend_rate_rad_s, arm.max_tip_speed_m_s
+        )
+        in_time = earliest_s < self._latest_s
+        return self._goals.configurations[in_time], earliest_s[in_time]
 
 
 class SpaceTimeProblem:
@@ -184,23 +203,12 @@ class SpaceTimeProblem:
         self.space.updateEpsilon()
 
     def definition(
-        self, q: FloatArray, now_s: float, goal_configurations: FloatArray, rng: np.random.Generator
+        self, q: FloatArray, now_s: float, goals: GoalConfigurations, rng: np.random.Generator
     ) -> ob.ProblemDefinition:
-        """Pose the solve: from ``q`` (dof,) at ``now_s`` to the goal, which may be sampled at K known configurations.
-
-        A configuration arrives no earlier than the arm's rates allow.
-        """
-        arm = self.query.arm
+        """Pose the solve: from ``q`` (dof,) [rad] at ``now_s`` [s] to the goal, which may be sampled at ``goals``."""
         start = self.si.allocState()
         write_state(start, q, now_s)
         definition = ob.ProblemDefinition(self.si)
         definition.addStartState(start)
-        needed = _kernels.least_durations(
-            q, goal_configurations, arm.section_length_m, arm.max_bend_rate_rad_s, arm.max_tip_speed_m_s
-        )
-        reachable = needed < self.horizon_s
-        goal = TipGoal(
-            self.si, self.query, goal_configurations[reachable], now_s + needed[reachable], now_s + self.horizon_s, rng
-        )
-        definition.setGoal(goal)
+        definition.setGoal(TipGoal(self.si, self.query, goals, (q, now_s), now_s + self.horizon_s, rng))
         return definition

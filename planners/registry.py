@@ -32,6 +32,8 @@ class PlannerEntry(NamedTuple):
     """How far ahead its settings make it look [s]."""
     prediction_step_s: float = 1.0
     """Spacing of the predicted positions it is given [s]."""
+    prediction_margin: float = 0.0
+    """Obstacles are grown by this many standard deviations of their predicted position's error."""
     is_bound: bool = False
     """Sees the true future: shows what is possible and is never ranked."""
 

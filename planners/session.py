@@ -9,13 +9,12 @@ from ompl import base as ob
 from ompl import util as ou
 
 from planners.base import ArmPlanner
-from planners.goals import goal_configurations
-from planners.prediction import Observation, build_predictor
+from planners.goals import GoalConfigurations
+from planners.prediction import Observation, Prediction, build_predictor
 from planners.problem import Query, SpaceTimeProblem, read_state
 from planners.registry import PLANNERS, PlannerSpec
 from scenarios.arm import ContinuumArm, FloatArray
 from scenarios.scenario import Scenario
-from scenarios.world import SampledWorld
 
 GOALS = 64
 """Goal configurations looked for per trial."""
@@ -56,14 +55,16 @@ class Session:
         self.commitment = entry.commitment
         self._iterations = getattr(spec.settings, "iterations", None)
         self._horizon_s = entry.horizon_s(spec.settings)
-        self._step_s = entry.prediction_step_s
+        self._step_s, self._margin = entry.prediction_step_s, entry.prediction_margin
         self._scenario, self._limits = scenario, limits
         self._predictor = build_predictor("truth" if entry.is_bound else predictor, scenario)
         self._rng = np.random.default_rng(seed)
         _seed_ompl(seed)
-        empty = SampledWorld(0.0, 1.0, np.empty((2, 0, 3)), np.empty((2, 0)), 0.0)
-        self._problem = SpaceTimeProblem(self._query(empty), self._horizon_s)
-        self._goals = goal_configurations(scenario.arm, scenario.goal, scenario.goal_tolerance_m, GOALS, self._rng)
+        nothing = Prediction(0.0, 1.0, np.empty((2, 0, 3)), np.empty(0), np.empty((2, 0)))
+        self._problem = SpaceTimeProblem(self._query(nothing), self._horizon_s)
+        self._goals = GoalConfigurations(
+            scenario.arm, scenario.goal, scenario.goal_tolerance_m, GOALS, np.random.default_rng(seed)
+        )
         self._planner = entry.build(self._problem, spec.settings)
 
     def plan(self, q: FloatArray, now_s: float, observation: Observation) -> Plan:
@@ -92,12 +93,12 @@ class Session:
         )
 
     def _look(self, observation: Observation, now_s: float) -> None:
-        world = self._predictor.predict(observation, self._horizon_s, self._step_s)
-        self._problem.update(self._query(world), now_s)
+        prediction = self._predictor.predict(observation, self._horizon_s, self._step_s)
+        self._problem.update(self._query(prediction), now_s)
 
-    def _query(self, world: SampledWorld) -> Query:
-        scenario = self._scenario
-        return Query(scenario.arm, scenario.goal, scenario.goal_tolerance_m, world, self._limits)
+    def _query(self, prediction: Prediction) -> Query:
+        scenario, world = self._scenario, prediction.world(self._margin)
+        return Query(scenario.arm, scenario.goal, scenario.goal_tolerance_m, prediction, world, self._limits)
 
     def _checks(self) -> tuple[int, int]:
         own = self._planner.state_checks if isinstance(self._planner, ArmPlanner) else 0

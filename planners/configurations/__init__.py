@@ -88,7 +88,8 @@ def enumerated_space(arm: ContinuumArm, spacing_rad: float) -> EnumeratedSpace:
         )
     # One cube to spare: a tip on the far face of the last cube still has a number.
     half = math.ceil(arm.length_m / CUBE_M) + 1
-    key = f"{source_hash(Path(_kernels.__file__))}/{bends.tobytes().hex()}/{arm.n_sections}/{arm.section_length_m}/{CUBE_M}"
+    source = source_hash(Path(_kernels.__file__))
+    key = f"{source}/{bends.tobytes().hex()}/{arm.n_sections}/{arm.section_length_m}/{CUBE_M}"
     folder = cache_folder() / "configurations" / hashlib.sha256(key.encode()).hexdigest()[:16]
     if not folder.is_dir():
         cubes = _kernels.enumerate_cubes(bends, arm.n_sections, arm.section_length_m, CUBE_M, half)

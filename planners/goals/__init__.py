@@ -1,5 +1,7 @@
 """Configurations whose tip is at the goal: what trees in configuration space are grown towards."""
 
+import functools
+
 import numpy as np
 
 from planners.goals import _kernels
@@ -7,14 +9,26 @@ from scenarios.arm import ContinuumArm, FloatArray
 from scenarios.families.base import random_configuration
 
 
-def goal_configurations(
-    arm: ContinuumArm, goal_m: FloatArray, tolerance_m: float, count: int, rng: np.random.Generator
-) -> FloatArray:
-    """Configurations (K <= count, dof) [rad] with the tip well within ``tolerance_m`` of ``goal_m`` (3,) [m].
+class GoalConfigurations:
+    """Goal configurations of one trial, looked for when first asked for."""
 
-    The arm is redundant, so its goal is a surface of configurations: random ones are bent until their tip is there
-    (damped least squares), which spreads the K over that surface. None may come back when the goal is out of reach.
-    """
-    starts = np.stack([random_configuration(rng, arm) for _ in range(count)])
-    found, reached = _kernels.reach(starts, goal_m, 0.5 * tolerance_m, arm.section_length_m, arm.max_bend_rad)
-    return np.ascontiguousarray(found[reached])
+    def __init__(
+        self, arm: ContinuumArm, goal_m: FloatArray, tolerance_m: float, count: int, rng: np.random.Generator
+    ) -> None:
+        """Look for at most ``count`` configurations with the tip within ``tolerance_m`` of ``goal_m`` (3,) [m]."""
+        self._arm, self._goal_m, self._tolerance_m = arm, goal_m, tolerance_m
+        self._count, self._rng = count, rng
+
+    @functools.cached_property
+    def configurations(self) -> FloatArray:
+        """Configurations (K <= count, dof) [rad], well within the tolerance; none when the goal is out of reach.
+
+        The arm is redundant, so its goal is a surface of configurations: random ones are bent until their tip is there
+        (damped least squares), which spreads them over that surface.
+        """
+        arm = self._arm
+        starts = np.stack([random_configuration(self._rng, arm) for _ in range(self._count)])
+        found, reached = _kernels.reach(
+            starts, self._goal_m, 0.5 * self._tolerance_m, arm.section_length_m, arm.max_bend_rad
+        )
+        return np.ascontiguousarray(found[reached])

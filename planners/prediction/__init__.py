@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from planners.prediction.cubic import CubicPredictor
 from planners.prediction.observation import Observation
-from planners.prediction.predictor import Predictor
+from planners.prediction.predictor import Prediction, Predictor
 from planners.prediction.truth import TruthPredictor
 from scenarios.scenario import Scenario
 from scenarios.spec import known_name
@@ -37,4 +37,4 @@ def build_predictor(name: str, scenario: Scenario) -> Predictor:
     return PREDICTORS[known_name("predictor", name, PREDICTORS)].build(scenario)
 
 
-__all__ = ["PREDICTORS", "Observation", "Predictor", "PredictorEntry", "build_predictor"]
+__all__ = ["PREDICTORS", "Observation", "Prediction", "Predictor", "PredictorEntry", "build_predictor"]
