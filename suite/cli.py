@@ -11,7 +11,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 from types import FrameType
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
 
 import typer
 from typer.exceptions import TyperException
@@ -28,6 +28,8 @@ app = typer.Typer(
     rich_markup_mode=None,  # rich help would double the time of --help
     pretty_exceptions_enable=False,
 )
+
+_Number = TypeVar("_Number", int, float)
 
 Family = Annotated[str | None, typer.Option(help="Scenario family. [default: orbit]")]
 Obstacles = Annotated[str | None, typer.Option(help="Numbers of obstacles. [default: 1,3,5,6]")]
@@ -58,8 +60,8 @@ def run(
     scenarios: Annotated[
         list[Path] | None, typer.Option(help="Scenario file to use instead of a family; may be repeated.")
     ] = None,
-    workers: Annotated[int | None, typer.Option(min=1, max=1024, help="Processes. [default: all cores]")] = None,
-    hang_limit_s: Annotated[float, typer.Option(min=1, help="A trial that takes longer is killed.")] = 300.0,
+    workers: Annotated[int | None, typer.Option(help="Processes. [default: all cores]")] = None,
+    hang_limit_s: Annotated[float, typer.Option(help="A trial that takes longer is killed.")] = 300.0,
     out: Annotated[Path | None, typer.Option(help="Folder of the run. [default: results/NAME]")] = None,
     fresh: Annotated[bool, typer.Option("--fresh", help="Start over what the folder holds.")] = False,
 ) -> None:
@@ -79,12 +81,12 @@ def run(
         "dropout": dropout,
         "scenario_files": scenarios and tuple(str(file) for file in scenarios),
     }
+    n_workers = _within("--workers", _cores() if workers is None else workers, 1, 1024)
+    _within("--hang-limit-s", hang_limit_s, 1, 1e6)
     experiment = _experiment(preset, {name: value for name, value in fields.items() if value is not None})
     folder = out or Path("results") / experiment.name
     try:
-        summary = run_experiment(
-            experiment, folder, workers=workers or _cores(), hang_limit_s=hang_limit_s, fresh=fresh
-        )
+        summary = run_experiment(experiment, folder, workers=n_workers, hang_limit_s=hang_limit_s, fresh=fresh)
     except RunInterrupted as stop:
         _say(f"stopped: {stop} in {folder}; the same command goes on from there")
         raise typer.Exit(EXIT_INTERRUPTED) from None
@@ -234,6 +236,12 @@ def _whole_numbers(text: str) -> tuple[int, ...]:
         return tuple(int(part) for part in text.split(","))
     except ValueError:
         raise _usage(f"--obstacles: found {text!r}, allowed whole numbers such as 1,3,5,6") from None
+
+
+def _within(option: str, value: _Number, low: float, high: float) -> _Number:
+    if not low <= value <= high:
+        raise _usage(f"{option}: found {value}, allowed {low:g} to {high:g}")
+    return value
 
 
 def _usage(message: str) -> ValueError:

@@ -46,8 +46,10 @@ def run_tasks(job: Job, tasks: Iterable[TrialTask], workers: int) -> Iterator[tu
         WorkerStartError: A worker died while it started.
     """
     waiting = iter(tasks)
-    crew = [_Worker(job, task) for task in islice(waiting, workers)]
+    crew: list[_Worker] = []
     try:
+        for task in islice(waiting, workers):
+            crew.append(_Worker(job, task))
         while crew:
             for worker in _due(crew):
                 finished, result = worker.task, worker.settle()

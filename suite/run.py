@@ -60,12 +60,12 @@ def run_experiment(
         tasks = list(experiment.tasks(scenarios))
         finished = journal.finished()
         left = [task for task in tasks if task.key not in finished]
-        if left:
-            try:
+        try:
+            if left:
                 _run(left, experiment.specs(), journal, workers, hang_limit_s)
-            except KeyboardInterrupt:
-                raise RunInterrupted(len(journal.finished()), len(tasks)) from None
-        return write_derived(folder, journal, scenarios, experiment.planners)
+            return write_derived(folder, journal, scenarios, experiment.planners)
+        except KeyboardInterrupt:
+            raise RunInterrupted(len(journal.finished()), len(tasks)) from None
 
 
 def _run(

@@ -87,9 +87,22 @@ def render_pairs(pairs: pd.DataFrame, format: Format) -> str:
     return _tabulated(titles, rows, format)
 
 
-def as_markdown_page(title: str, summary: pd.DataFrame) -> str:
+def conditions(trials: pd.DataFrame) -> str:
+    """Under which conditions the trials were run, in one sentence."""
+
+    def values(name: str) -> str:
+        return ", ".join(str(value) for value in trials[name].unique())
+
+    limits = ", ".join("on" if limits else "off" for limits in trials["limits"].unique())
+    return (
+        f"Predictor {values('predictor')}; motion limits {limits}; observation noise {values('noise_mm')} mm,"
+        f" dropout {values('dropout')}; seed {values('experiment_seed')}."
+    )
+
+
+def as_markdown_page(title: str, trials: pd.DataFrame, summary: pd.DataFrame) -> str:
     """The text of ``table.md``."""
-    return f"# {title}\n\n{render(summary, 'markdown')}\n{NOTES}\n"
+    return f"# {title}\n\n{conditions(trials)}\n\n{render(summary, 'markdown')}\n{NOTES}\n"
 
 
 def _tabulated(titles: list[str], rows: list[list[str]], format: Format) -> str:

@@ -18,10 +18,17 @@ FLOAT_FORMAT = "%.9g"
 
 
 def trials_frame(rows: Iterable[Row]) -> pd.DataFrame:
-    """The rows as a sorted frame with the declared columns and types."""
-    frame = pd.DataFrame(rows, columns=list(COLUMN_NAMES))
-    frame = frame.astype({column.name: column.dtype for column in COLUMNS})
+    """The rows as a sorted frame with the declared columns and types.
+
+    Numbers are rounded as they are written: what is computed from the frame can be computed from ``trials.csv``.
+    """
+    written = [{name: _as_written(value) for name, value in row.items()} for row in rows]
+    frame = pd.DataFrame(written, columns=list(COLUMN_NAMES)).astype({c.name: c.dtype for c in COLUMNS})
     return frame.sort_values(SORTED_BY, ignore_index=True)
+
+
+def _as_written(value: object) -> object:
+    return float(FLOAT_FORMAT % value) if isinstance(value, float) else value
 
 
 def trials_csv(trials: pd.DataFrame) -> str:

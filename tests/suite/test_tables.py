@@ -20,6 +20,11 @@ def make_row(planner: str, number: int, *, success: bool, **others: object) -> R
         "family": "orbit",
         "n_obstacles": 3,
         "planner": planner,
+        "predictor": "cubic",
+        "limits": False,
+        "noise_mm": 0.0,
+        "dropout": 0.0,
+        "experiment_seed": 3,
         "outcome": "reached" if success else "collided",
         "success_per_step": success,
         "planning_time_s": 1.0 + number,
@@ -166,6 +171,8 @@ def test_formats() -> None:
         assert set(text.splitlines()[1]) == {"|", "-"}
     assert render(summary, "csv") == as_csv(summary)
     assert as_csv(summary).count("\n") == 3
-    page = as_markdown_page("name", summary)
-    assert page.startswith("# name\n\n| obstacles")
+    page = as_markdown_page("name", trials, summary)
+    assert page.startswith(
+        "# name\n\nPredictor cubic; motion limits off; observation noise 0.0 mm, dropout 0.0; seed 3.\n"
+    )
     assert "95 % Wilson interval" in page
