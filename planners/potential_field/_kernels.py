@@ -4,11 +4,12 @@ import math
 
 import numpy as np
 
-from planners._kernels import PIECE_RAD, fastest_tip, largest_bend_change
+from planners._kernels import fastest_tip, largest_bend_change
 from scenarios.kernels.jit import kernel
 from scenarios.kernels.kinematics import ARC_SIZE, point_on_arc, position_jacobian, section_arcs
 
 DAMPING = 1e-4  # of the pseudo-inverse [m^2/rad^2]; bounds its gain where the Jacobian loses rank
+RESERVE = 0.98  # share of the arm's rates that is used: tip speed is measured on pieces of a motion
 NEAREST_M = 1e-3  # clearance below which repulsion no longer grows
 
 
@@ -94,15 +95,13 @@ def field_step(q, goal, centers, radii, section_length, arm_radius, max_bend, be
             add_task(jacobian, (point - centers[j]) * (push / distance), rate)
     add_limit_potential(q, max_bend, limit_margin, limit_gain, rate)
     target = q + rate * duration
-    turn = largest_bend_change(q, target)
-    # Rates are held over the whole step; a long move is cut first so that the tip's speed is measured on what is done.
-    scale = min(1.0, 0.99 * bend_rate * duration / max(turn, 1e-12), 4.0 * PIECE_RAD / max(turn, 1e-12))
-    target = q + (target - q) * scale
-    moved = fastest_tip(q, target, section_length)
-    target = q + (target - q) * min(1.0, 0.99 * tip_speed * duration / max(moved, 1e-12))
     for i in range(n):
         bend = math.hypot(target[2 * i], target[2 * i + 1])
         if bend > max_bend:
             target[2 * i] *= max_bend / bend
             target[2 * i + 1] *= max_bend / bend
-    return target
+    # Rates last: on the way back from a target within the disc of bends every point is within it.
+    turn = largest_bend_change(q, target)
+    target = q + (target - q) * min(1.0, RESERVE * bend_rate * duration / max(turn, 1e-12))
+    moved = fastest_tip(q, target, section_length)
+    return q + (target - q) * min(1.0, RESERVE * tip_speed * duration / max(moved, 1e-12))
