@@ -18,9 +18,8 @@ REFINE_RATIO = 10.0  # too small: below this many pads
 
 CONTACT_M = 1e-4
 KEPT_SHARE = 0.75  # of the smallest clearance seen: advancing proves that no instant has less
-MAX_LOOKS = 10_000_000  # what is not proven by then counts as contact: minutes of work, for speeds beyond all reason
+MAX_LOOKS = 1_000_000  # beyond one per timed state; seconds of work. What is not proven by then counts as contact
 
-SAME_TIME_S = 1e-9
 ORBIT, TRACK = range(2)
 
 FloatArray = npt.NDArray[np.float64]
@@ -37,7 +36,7 @@ class Work(NamedTuple):
     gaps: FloatArray
     speeds: FloatArray
     holds: FloatArray
-    looks: npt.NDArray[np.int64]
+    looks_left: npt.NDArray[np.int64]
 
 
 @kernel
@@ -52,7 +51,7 @@ def make_work(n, m):
         np.empty((m, n * CHORDS)),
         np.empty(m),
         np.empty(m),
-        np.zeros(1, dtype=np.int64),
+        np.full(1, MAX_LOOKS, dtype=np.int64),
     )
 
 
@@ -169,7 +168,7 @@ def obstacle_at(j, t, truth):
 def _look(q, t, section_length, arm_radius, truth, work):
     """Clearance at an instant; also each chord's from each obstacle, into ``work.gaps``, and the obstacles' speeds."""
     lay_out(q, section_length, CHORDS, work.nodes, work.bends)
-    work.looks[0] += 1
+    work.looks_left[0] -= 1
     nodes = work.nodes
     length = section_length / CHORDS
     smallest = math.inf
@@ -217,6 +216,7 @@ def _time_to_contact(work, truth, kept):
 
 @kernel
 def interpolate(q0, q1, share, q):
+    """Write the configuration at ``share`` of the way from ``q0`` to ``q1`` into ``q``."""
     for c in range(q.shape[0]):
         q[c] = q0[c] + share * (q1[c] - q0[c])
 
@@ -241,7 +241,7 @@ def _advance(q0, q1, t0, duration, start, stop, smallest, section_length, arm_ra
     """
     share, until = (start - t0) / duration, (stop - t0) / duration
     at_start = math.nan
-    while share < until:
+    while True:
         t = t0 + share * duration
         interpolate(q0, q1, share, work.q)
         gap = _look(work.q, t, section_length, arm_radius, truth, work)
@@ -251,10 +251,11 @@ def _advance(q0, q1, t0, duration, start, stop, smallest, section_length, arm_ra
         if gap < CONTACT_M:
             return t, at_start, smallest
         ahead = share + _time_to_contact(work, truth, KEPT_SHARE * smallest) / duration
-        if ahead == share or work.looks[0] > MAX_LOOKS:
+        if ahead == share or work.looks_left[0] < 0:
             return t, at_start, smallest  # not even a tick of the clock is proven
         share = ahead
-    return math.nan, at_start, smallest
+        if share >= until:
+            return math.nan, at_start, smallest
 
 
 @kernel
@@ -265,10 +266,11 @@ def contacts(times, configurations, end, section_length, arm_radius, truth):
     clearance seen. Once there is a contact, only whole seconds are still looked at; a contact at one of them ends it.
     """
     work = make_work(configurations.shape[1] // 2, truth.radii_m.shape[0])
+    work.looks_left[0] += times.shape[0]
     swept, smallest = math.nan, math.inf
     for k in range(times.shape[0] - 1):
         duration = times[k + 1] - times[k]
-        if duration < SAME_TIME_S:
+        if duration <= 0.0:
             continue
         q0, q1 = configurations[k], configurations[k + 1]
         speed_bounds(q0, q1, duration, section_length, CHORDS, work.arm_speeds)

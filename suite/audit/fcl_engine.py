@@ -59,7 +59,10 @@ class _Bodies:
         self._managers = _manager(self._capsules), _manager(self._shapes)
 
     def clearance(self, q: FloatArray, centers: list[FloatArray]) -> float:
-        """Signed distance [m] between the arm at ``q`` (dof,) and obstacles at ``centers`` (3,) [m]; inf without."""
+        """Signed distance [m] between the arm at ``q`` (dof,) and obstacles at ``centers`` (3,) [m]; inf without.
+
+        Of several contacts it is the depth of the one that FCL meets first.
+        """
         if not centers:
             return math.inf
         points = self._arm.backbone_points(q, _CAPSULES)

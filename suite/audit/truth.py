@@ -62,7 +62,7 @@ _NO_POINTS = np.empty((0, 4))
 def pack(scenario: Scenario) -> Truth:
     """Pack the obstacles of ``scenario``, exact at every instant; a law without a kernel is resampled with a pad."""
     radii = [obstacle.radius_m for obstacle in scenario.obstacles]
-    packed = [_pack_law(obstacle.motion, scenario.time_limit_s) for obstacle in scenario.obstacles]
+    packed = [pack_law(obstacle.motion, scenario.time_limit_s) for obstacle in scenario.obstacles]
     return assemble(radii, packed)
 
 
@@ -79,7 +79,8 @@ def assemble(radii_m: Sequence[float], packed: Sequence[_Packed]) -> Truth:
     )
 
 
-def _pack_law(law: Law, end_s: float) -> _Packed:
+def pack_law(law: Law, end_s: float) -> _Packed:
+    """Pack one law of motion, to be followed until ``end_s`` [s]."""
     if isinstance(law, Orbit):
         return _orbit(law)
     if isinstance(law, Track):

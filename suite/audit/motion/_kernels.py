@@ -5,25 +5,34 @@ import math
 import numpy as np
 
 from scenarios.kernels.jit import kernel
-from suite.audit._kernels import SAME_TIME_S, interpolate, tip
+from suite.audit._kernels import interpolate, tip
 
+SAME_TIME_S = 1e-9
 SAME_CONFIGURATION_RAD = 1e-9
 SAME_START_RAD = 1e-6
 BEND_SLACK_RAD = 1e-6
 ARRIVAL_SLACK_M = 1e-9
 LIMIT_SLACK = 1e-3
+FOUND_WIDTH = 1e-3  # of a motion: how closely the first excess of the tip's speed is located
+LEAST_WIDTH = 1e-6  # what is not proven at this width counts as excess
 
 OK, NOT_FINITE, WRONG_START, BACKWARD_TIME, JUMP, BEND_LIMIT, BEND_RATE, TIP_SPEED = range(8)
 
 
 @kernel
+def _is_finite(q):
+    for c in range(q.shape[0]):
+        if not math.isfinite(q[c]):
+            return False
+    return True
+
+
+@kernel
 def _difference(a, b):
-    """Largest difference between two configurations in any number; nan or inf if one is not finite."""
+    """Largest difference between two configurations in any number."""
     largest = 0.0
     for c in range(a.shape[0]):
-        apart = abs(a[c] - b[c])
-        if not apart <= largest:
-            largest = apart
+        largest = max(largest, abs(a[c] - b[c]))
     return largest
 
 
@@ -32,9 +41,9 @@ def first_lie(times, configurations, start, max_bend):
     """Number of timed states before the first that cannot be, and what is wrong with that one (OK: nothing)."""
     for k in range(times.shape[0]):
         q = configurations[k]
-        if not (math.isfinite(times[k]) and math.isfinite(_difference(q, start))):
+        if not (math.isfinite(times[k]) and _is_finite(q)):
             return k, NOT_FINITE
-        if k == 0 and (abs(times[0]) > SAME_TIME_S or _difference(q, start) > SAME_START_RAD):
+        if k == 0 and (times[0] != 0.0 or _difference(q, start) > SAME_START_RAD):
             return k, WRONG_START
         for i in range(0, q.shape[0], 2):
             if math.hypot(q[i], q[i + 1]) > max_bend + BEND_SLACK_RAD:
@@ -87,7 +96,7 @@ def _tip_too_fast(q0, q1, until, allowed, section_length, q, nodes, bends):
     sure, seen = (1.0 + 2.0 * LIMIT_SLACK) * allowed, (1.0 + LIMIT_SLACK) * allowed
     if first <= sure:
         return math.nan
-    step = 1e-4 / max(1.0, turned)
+    step = 1e-4 / turned  # a bend of 1e-4 rad, whatever the share: truncation and rounding are then both negligible
     error = third * step * step / 6.0
     bow = (second * second + first * third) / 4.0  # of the squared speed over its chord, per squared share
     share, width = 0.0, until
@@ -97,10 +106,10 @@ def _tip_too_fast(q0, q1, until, allowed, section_length, q, nodes, bends):
     while share < until:
         width = min(width, until - share)
         there = _tip_speed(q0, q1, share + width, step, section_length, q, nodes, bends)
-        if there - error > seen and width < 1e-3:
-            return share + width
         if (max(here, there) + error) ** 2 + bow * width * width <= sure * sure:
             share, here, width = share + width, there, 2.0 * width
+        elif width < LEAST_WIDTH or (width < FOUND_WIDTH and there - error > seen):
+            return share + width
         else:
             width *= 0.5
     return math.nan
