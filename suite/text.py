@@ -91,7 +91,7 @@ def conditions(trials: pd.DataFrame) -> str:
     """Under which conditions the trials were run, in one sentence."""
 
     def values(name: str) -> str:
-        return ", ".join(str(value) for value in trials[name].unique())
+        return ", ".join(f"{value:g}" if isinstance(value, float) else str(value) for value in trials[name].unique())
 
     limits = ", ".join("on" if limits else "off" for limits in trials["limits"].unique())
     return (

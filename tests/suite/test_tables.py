@@ -172,7 +172,5 @@ def test_formats() -> None:
     assert render(summary, "csv") == as_csv(summary)
     assert as_csv(summary).count("\n") == 3
     page = as_markdown_page("name", trials, summary)
-    assert page.startswith(
-        "# name\n\nPredictor cubic; motion limits off; observation noise 0.0 mm, dropout 0.0; seed 3.\n"
-    )
+    assert page.startswith("# name\n\nPredictor cubic; motion limits off; observation noise 0 mm, dropout 0; seed 3.\n")
     assert "95 % Wilson interval" in page
