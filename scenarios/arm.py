@@ -13,6 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from scenarios.errors import ScenarioError
 from scenarios.kernels import kinematics
+from scenarios.spec import parse_settings, parse_spec
 
 FloatArray = npt.NDArray[np.float64]
 _Positive = Annotated[float, Field(gt=0, allow_inf_nan=False, le=100.0)]
@@ -89,6 +90,15 @@ class ContinuumArm(BaseModel):
         out = np.empty((3, self.dof))
         kinematics.position_jacobian(self.check_configurations(q)[0], self.section_length_m, at, out)
         return out
+
+    @classmethod
+    def from_text(cls, settings: str) -> "ContinuumArm":
+        """The default arm but for ``settings``, such as ``radius_m=0.015,n_sections=2``.
+
+        Raises:
+            SpecError: An unknown setting or a value out of range.
+        """
+        return parse_settings("arm", cls, parse_spec(f"arm[{settings}]")[1])
 
     def bending_from_arcs(self, arcs: npt.ArrayLike) -> FloatArray:
         """Configuration (dof,) [rad] from rows (theta, phi) (n, 2) [rad]."""

@@ -32,6 +32,7 @@ app = typer.Typer(
 _Number = TypeVar("_Number", int, float)
 
 Family = Annotated[str | None, typer.Option(help="Scenario family. [default: orbit]")]
+Arm = Annotated[str | None, typer.Option(help="Settings of the arm, such as 'radius_m=0.015,n_sections=2'.")]
 Obstacles = Annotated[str | None, typer.Option(help="Numbers of obstacles. [default: 1,3,5,6]")]
 Trials = Annotated[int | None, typer.Option(help="Scenarios per number of obstacles. [default: 10]")]
 Seed = Annotated[int | None, typer.Option(help="Seed of the experiment. [default: 0]")]
@@ -47,6 +48,7 @@ def run(
         str | None, typer.Option(help="Start from a named experiment (table1) or the manifest.json of a run.")
     ] = None,
     family: Family = None,
+    arm: Arm = None,
     obstacles: Obstacles = None,
     trials: Trials = None,
     seed: Seed = None,
@@ -72,6 +74,7 @@ def run(
     fields = {
         "planners": planners and _split(planners),
         "family": family,
+        "arm": arm,
         "obstacles": obstacles and _whole_numbers(obstacles),
         "trials": trials,
         "seed": seed,
@@ -139,19 +142,26 @@ def table(
 def generate(
     file: Annotated[Path, typer.Argument(help="Scenario file to write: .yaml, .json or .jsonl.")],
     family: Family = None,
+    arm: Arm = None,
     obstacles: Obstacles = None,
     trials: Trials = None,
     seed: Seed = None,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the file if it is there.")] = False,
 ) -> None:
     """Write the scenarios of a family to a file."""
-    from scenarios import generate, save_scenarios
+    from scenarios import ContinuumArm, generate, save_scenarios
     from suite.errors import SuiteError
 
     numbers = _whole_numbers(obstacles or "1,3,5,6")
     if file.exists() and not overwrite:
         raise SuiteError(f"{file}: found a file there, allowed with --overwrite")
-    drawn = [s for n in numbers for s in generate(family or "orbit", n, 10 if trials is None else trials, seed or 0)]
+    drawn = [
+        scenario
+        for n in numbers
+        for scenario in generate(
+            family or "orbit", n, 10 if trials is None else trials, seed or 0, ContinuumArm.from_text(arm or "")
+        )
+    ]
     save_scenarios(file, drawn)
     print(f"{file}: {len(drawn)} scenarios")
 

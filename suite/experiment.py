@@ -12,7 +12,7 @@ from typing import Annotated, Any
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from planners import PREDICTORS, PlannerSpec, parse_planner
-from scenarios import Scenario, generate, load_scenarios
+from scenarios import ContinuumArm, Scenario, generate, load_scenarios
 from scenarios.families import parse_family
 from scenarios.spec import known_name
 from suite.errors import SuiteError, one_line
@@ -29,6 +29,8 @@ class Experiment(BaseModel):
     planners: Annotated[tuple[str, ...], Field(min_length=1)]
     """Planner specs, such as ``temporal[horizon=3]``."""
     family: str = "orbit"
+    arm: str = ""
+    """Settings in which the arm differs from the default one, such as ``radius_m=0.015``."""
     obstacles: Annotated[tuple[Annotated[int, Field(ge=0, le=100)], ...], Field(min_length=1)] = (1, 3, 5, 6)
     """Numbers of obstacles; each gets ``trials`` scenarios."""
     trials: Annotated[int, Field(ge=1, le=100_000)] = 10
@@ -41,7 +43,7 @@ class Experiment(BaseModel):
     dropout: Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False)] = 0.0
     """Probability that an observation is lost."""
     scenario_files: tuple[str, ...] = ()
-    """Files to take the scenarios from, in place of ``family``, ``obstacles``, ``trials`` and ``seed``."""
+    """Files to take the scenarios from, in place of ``family``, ``arm``, ``obstacles``, ``trials`` and ``seed``."""
 
     @field_validator("planners")
     @classmethod
@@ -55,6 +57,12 @@ class Experiment(BaseModel):
     def _known_family(cls, family: str) -> str:
         parse_family(family)
         return family
+
+    @field_validator("arm")
+    @classmethod
+    def _known_arm(cls, arm: str) -> str:
+        ContinuumArm.from_text(arm)
+        return arm
 
     @field_validator("predictor")
     @classmethod
@@ -84,7 +92,8 @@ class Experiment(BaseModel):
             self._refuse_too_many(len(scenarios))
             return scenarios
         self._refuse_too_many(len(self.obstacles) * self.trials)  # before they are generated
-        return [s for n in self.obstacles for s in generate(self.family, n, self.trials, self.seed)]
+        arm = ContinuumArm.from_text(self.arm)
+        return [s for n in self.obstacles for s in generate(self.family, n, self.trials, self.seed, arm)]
 
     def _refuse_too_many(self, n_scenarios: int) -> None:
         n_trials = n_scenarios * len(self.planners)

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import pandas as pd
 from rich import box
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from suite.text import cells
@@ -27,7 +28,8 @@ def print_summary(summary: pd.DataFrame) -> None:
         table.add_column(title, justify="left" if title in {"planner", "family"} else "right", no_wrap=True)
     groups = list(zip(summary["family"], summary["n_obstacles"], strict=True))
     for row, group, following in zip(rows, groups, [*groups[1:], groups[-1]], strict=True):
-        table.add_row(*row[:shown], end_section=group != following)
+        # A spec's brackets would be read as markup.
+        table.add_row(*map(escape, row[:shown]), end_section=group != following)
     console.print(table)
     if shown < len(titles):
         console.print(f"Not shown for lack of width: {', '.join(titles[shown:])}", highlight=False)
