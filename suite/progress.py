@@ -30,7 +30,7 @@ def progress(total: int) -> Iterator[Advance]:
         yield _Lines(console, total)
         return
     with Progress(
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),  # the brackets of a spec are no markup
         BarColumn(),
         MofNCompleteColumn(),
         TimeElapsedColumn(),
