@@ -2,7 +2,7 @@
 
 from planners.prediction import PREDICTORS, Observation, build_predictor
 from planners.registry import ALIASES, PLANNERS, PlannerEntry, PlannerSpec, parse_planner, split_specs
-from planners.session import Plan, Session, warm_up
+from planners.session import Plan, Session, check_fit, warm_up
 
 __all__ = [
     "ALIASES",
@@ -14,6 +14,7 @@ __all__ = [
     "PlannerSpec",
     "Session",
     "build_predictor",
+    "check_fit",
     "parse_planner",
     "split_specs",
     "warm_up",

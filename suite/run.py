@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from planners import PlannerSpec
+from planners import PlannerSpec, check_fit
 from suite.derived import write_derived
 from suite.episode import run_trial
 from suite.executor import Job, run_tasks
@@ -56,6 +56,8 @@ def run_experiment(
         RunInterrupted: Stopped by the user; the next call goes on from there.
     """
     scenarios = experiment.scenarios()
+    for arm in {scenario.arm for scenario in scenarios}:
+        check_fit(experiment.specs(), arm)
     with open_run(folder, make_manifest(experiment, scenarios), fresh=fresh) as journal:
         tasks = list(experiment.tasks(scenarios))
         finished = journal.finished()

@@ -72,6 +72,21 @@ def hexagonal_lattice(spacing_rad: float, max_bend_rad: float) -> FloatArray:
     return np.ascontiguousarray(points[np.hypot(points[:, 0], points[:, 1]) <= max_bend_rad + 1e-12])
 
 
+def lattice_for(arm: ContinuumArm, spacing_rad: float) -> FloatArray:
+    """The lattice of one section of ``arm``: bending vectors (B, 2) [rad].
+
+    Raises:
+        ScenarioError: The arm would have more than ``MAX_CONFIGURATIONS``.
+    """
+    bends = hexagonal_lattice(spacing_rad, arm.max_bend_rad)
+    if len(bends) ** arm.n_sections > MAX_CONFIGURATIONS:
+        raise ScenarioError(
+            f"spacing_rad: found {spacing_rad} ({len(bends)} bends in each of {arm.n_sections} sections), "
+            f"allowed a lattice of at most {MAX_CONFIGURATIONS} configurations: take a wider spacing"
+        )
+    return bends
+
+
 def enumerated_space(arm: ContinuumArm, spacing_rad: float) -> EnumeratedSpace:
     """Enumerate ``arm``'s configurations, or map them from the cache when the same arm was enumerated before.
 
@@ -80,12 +95,7 @@ def enumerated_space(arm: ContinuumArm, spacing_rad: float) -> EnumeratedSpace:
     Raises:
         ScenarioError: The lattice would hold more than ``MAX_CONFIGURATIONS``.
     """
-    bends = hexagonal_lattice(spacing_rad, arm.max_bend_rad)
-    if len(bends) ** arm.n_sections > MAX_CONFIGURATIONS:
-        raise ScenarioError(
-            f"spacing_rad: found {spacing_rad} ({len(bends)} bends in each of {arm.n_sections} sections), "
-            f"allowed a lattice of at most {MAX_CONFIGURATIONS} configurations: take a wider spacing"
-        )
+    bends = lattice_for(arm, spacing_rad)
     # One cube to spare: a tip on the far face of the last cube still has a number.
     half = math.ceil(arm.length_m / CUBE_M) + 1
     source = source_hash(Path(_kernels.__file__))
