@@ -5,7 +5,7 @@ from scenarios.collision import clearance, clearances, is_motion_valid, is_state
 from scenarios.errors import ScenarioError
 from scenarios.families import FAMILIES, generate, start_is_free
 from scenarios.files import load_scenarios, save_scenarios
-from scenarios.motion import Orbit, Track
+from scenarios.motion import Line, Orbit, Track, Wander, Wave
 from scenarios.obstacle import Obstacle
 from scenarios.scenario import STEP_S, Scenario
 from scenarios.spec import SpecError
@@ -15,6 +15,7 @@ __all__ = [
     "FAMILIES",
     "STEP_S",
     "ContinuumArm",
+    "Line",
     "Obstacle",
     "Orbit",
     "SampledWorld",
@@ -22,6 +23,8 @@ __all__ = [
     "ScenarioError",
     "SpecError",
     "Track",
+    "Wander",
+    "Wave",
     "clearance",
     "clearances",
     "generate",

@@ -1,5 +1,7 @@
 """Laws of motion of an obstacle's centre, known at every instant of a scenario."""
 
+import functools
+import itertools
 from typing import Annotated, Literal
 
 import numpy as np
@@ -36,12 +38,7 @@ class Orbit(BaseModel):
 
     def position(self, times_s: FloatArray) -> FloatArray:
         """Centre at each time: (T,) [s] -> (T, 3) [m]."""
-        axis = np.asarray(self.normal) / np.linalg.norm(self.normal)
-        # Any vector not along the axis gives a first direction; the smallest component is the safest choice.
-        helper = np.eye(3)[int(np.argmin(np.abs(axis)))]
-        e1 = np.cross(axis, helper)
-        e1 /= np.linalg.norm(e1)
-        e2 = np.cross(axis, e1)
+        e1, e2 = _plane(self.normal)
         angle = self.phase_rad + self.rate_rad_s * np.asarray(times_s, dtype=np.float64)
         offset = self.radius_m * (np.outer(np.cos(angle), e1) + np.outer(np.sin(angle), e2))
         return np.asarray(np.asarray(self.center_m) + offset)
@@ -50,6 +47,74 @@ class Orbit(BaseModel):
     def speed_bound_m_s(self) -> float:
         """Largest speed at any time."""
         return abs(self.rate_rad_s) * self.radius_m
+
+
+@functools.lru_cache(maxsize=4096)  # an episode asks for every obstacle at every step
+def _plane(normal: Point) -> tuple[FloatArray, FloatArray]:
+    """Unit vectors e1 and e2 that span the plane with this normal, right-handed about it."""
+    axis = np.asarray(normal) / np.linalg.norm(normal)
+    # Any vector not along the axis gives a first direction; the smallest component is the safest choice.
+    helper = np.eye(3)[int(np.argmin(np.abs(axis)))]
+    e1 = np.cross(axis, helper)
+    e1 /= np.linalg.norm(e1)
+    return e1, np.cross(axis, e1)
+
+
+class Line(BaseModel):
+    """A straight line run at constant velocity, at every time: it comes from afar and goes on for ever."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    kind: Literal["line"] = "line"
+    point_m: Point = Field(description="where the centre is at t = 0")
+    velocity_m_s: Point
+
+    def position(self, times_s: FloatArray) -> FloatArray:
+        """Centre at each time: (T,) [s] -> (T, 3) [m]."""
+        return np.asarray(np.asarray(self.point_m) + np.outer(times_s, self.velocity_m_s))
+
+    @property
+    def speed_bound_m_s(self) -> float:
+        """Speed at every time."""
+        return float(np.linalg.norm(self.velocity_m_s))
+
+
+class Wave(BaseModel):
+    """One term of a ``Wander``: to and fro along a direction, ``amplitude * sin(phase + rate * t)``."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    amplitude_m: Point
+    rate_rad_s: Finite
+    phase_rad: Finite
+
+
+class Wander(BaseModel):
+    """A smooth wandering about ``center``: the sum of a few waves, each along a direction of its own."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    kind: Literal["wander"] = "wander"
+    center_m: Point
+    waves: tuple[Wave, ...] = Field(min_length=1, max_length=8)
+
+    def position(self, times_s: FloatArray) -> FloatArray:
+        """Centre at each time: (T,) [s] -> (T, 3) [m]."""
+        rates = np.array([wave.rate_rad_s for wave in self.waves])
+        phases = np.array([wave.phase_rad for wave in self.waves])
+        amplitudes = np.array([wave.amplitude_m for wave in self.waves])
+        return np.asarray(np.asarray(self.center_m) + np.sin(phases + np.outer(times_s, rates)) @ amplitudes)
+
+    @property
+    def speed_bound_m_s(self) -> float:
+        """Largest speed at any time, whatever the phases are.
+
+        The velocity is a sum of c_i * rate_i * amplitude_i with every c_i in [-1, 1]. Its length is convex in the c_i,
+        so it is largest where all are 1 or -1; one of them may be fixed, since signs can be swapped together.
+        """
+        peaks = np.array([np.multiply(wave.amplitude_m, wave.rate_rad_s) for wave in self.waves])
+        signs = [(1.0, *others) for others in itertools.product((1.0, -1.0), repeat=len(peaks) - 1)]
+        return float(np.linalg.norm(np.array(signs) @ peaks, axis=1).max())
 
 
 class Track(BaseModel):
@@ -83,4 +148,4 @@ class Track(BaseModel):
         return float((steps / np.diff(self.times_s)).max())
 
 
-Motion = Annotated[Orbit | Track, Field(discriminator="kind")]
+Motion = Annotated[Orbit | Line | Wander | Track, Field(discriminator="kind")]

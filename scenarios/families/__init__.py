@@ -11,12 +11,14 @@ from scenarios.arm import ContinuumArm
 from scenarios.collision import is_motion_valid
 from scenarios.errors import ScenarioError
 from scenarios.families.base import Family
+from scenarios.families.crossing import CrossingFamily
 from scenarios.families.orbit import OrbitFamily
+from scenarios.families.wander import WanderFamily
 from scenarios.scenario import Scenario
 from scenarios.spec import known_name, parse_settings, parse_spec
 from scenarios.world import sample_world
 
-FAMILIES: dict[str, type[Family]] = {"orbit": OrbitFamily}
+FAMILIES: dict[str, type[Family]] = {"orbit": OrbitFamily, "crossing": CrossingFamily, "wander": WanderFamily}
 
 
 def parse_family(spec: str) -> tuple[str, Family]:

@@ -44,6 +44,11 @@ def random_direction(rng: np.random.Generator) -> FloatArray:
     return np.asarray(vector / np.linalg.norm(vector))
 
 
+def random_radius(rng: np.random.Generator) -> float:
+    """Radius of a sphere [m]: 2 or 3 cm, the paper's two sizes."""
+    return float(rng.choice([0.02, 0.03]))
+
+
 def draw_problem(
     rng: np.random.Generator, arm: ContinuumArm, min_distance_m: float, max_distance_m: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -4,7 +4,7 @@ import numpy as np
 from pydantic import Field
 
 from scenarios.arm import ContinuumArm
-from scenarios.families.base import Family, Problem, draw_problem, random_direction
+from scenarios.families.base import Family, Problem, draw_problem, random_direction, random_radius
 from scenarios.motion import Orbit
 from scenarios.obstacle import Obstacle
 
@@ -33,5 +33,5 @@ class OrbitFamily(Family):
                 rate_rad_s=rate,
                 phase_rad=rng.uniform(0.0, 2.0 * np.pi),
             )
-            obstacles.append(Obstacle(radius_m=float(rng.choice([0.02, 0.03])), motion=motion))
+            obstacles.append(Obstacle(radius_m=random_radius(rng), motion=motion))
         return Problem(start, goal, tuple(obstacles))
