@@ -3,10 +3,13 @@
 from collections.abc import Callable
 from typing import NamedTuple
 
+from planners.prediction.arc import ArcPredictor
 from planners.prediction.cubic import CubicPredictor
 from planners.prediction.observation import Observation
-from planners.prediction.predictor import Prediction, Predictor
+from planners.prediction.portfolio import PortfolioPredictor
+from planners.prediction.predictor import Forecast, Prediction, Predictor
 from planners.prediction.truth import TruthPredictor
+from planners.prediction.velocity import VelocityPredictor
 from scenarios.scenario import Scenario
 from scenarios.spec import known_name
 
@@ -21,7 +24,13 @@ class PredictorEntry(NamedTuple):
 
 
 PREDICTORS: dict[str, PredictorEntry] = {
+    "velocity": PredictorEntry("constant velocity over the last 5 observations", lambda _: VelocityPredictor()),
     "cubic": PredictorEntry("cubic spline over the last 5 observations (the paper's)", lambda _: CubicPredictor()),
+    "arc": PredictorEntry("circular arc through everything seen", lambda _: ArcPredictor()),
+    "portfolio": PredictorEntry(
+        "per obstacle the model that hindsight favours",
+        lambda _: PortfolioPredictor([ArcPredictor(), ArcPredictor(window=8), VelocityPredictor()]),
+    ),
     "truth": PredictorEntry(
         "the true motion: a bound", lambda scenario: TruthPredictor(scenario.obstacles), is_oracle=True
     ),
@@ -37,4 +46,4 @@ def build_predictor(name: str, scenario: Scenario) -> Predictor:
     return PREDICTORS[known_name("predictor", name, PREDICTORS)].build(scenario)
 
 
-__all__ = ["PREDICTORS", "Observation", "Prediction", "Predictor", "PredictorEntry", "build_predictor"]
+__all__ = ["PREDICTORS", "Forecast", "Observation", "Prediction", "Predictor", "PredictorEntry", "build_predictor"]

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from planners.prediction.observation import Observation, without_gaps
+from planners.prediction.observation import Observation
 from scenarios.arm import FloatArray
 from scenarios.world import SampledWorld, make_world
 
@@ -23,30 +23,42 @@ class Prediction(NamedTuple):
     bounds_m: FloatArray
     """Bound on the error of each centre, one standard deviation of it, shape (T, m), [m]."""
 
-    def world(self, margin: float) -> SampledWorld:
-        """The obstacles for collision checks, each grown by ``margin`` times its error bound."""
-        return make_world(self.start_s, self.step_s, self.centers_m, self.radii_m + margin * self.bounds_m)
+    def world(self, margin: float, largest_bound_m: float = float("inf")) -> SampledWorld:
+        """The obstacles for collision checks, each grown by ``margin`` times its error bound, cut at the largest."""
+        grown = self.radii_m + margin * np.minimum(self.bounds_m, largest_bound_m)
+        return make_world(self.start_s, self.step_s, self.centers_m, grown)
+
+
+class Forecast(NamedTuple):
+    """Centres at given times, with bounds on their errors."""
+
+    centers_m: FloatArray
+    """Shape (T, m, 3), [m]."""
+    bounds_m: FloatArray
+    """One standard deviation of the error, shape (T, m), [m]: 95 % of errors should be within twice that."""
 
 
 class Predictor(ABC):
-    """Extrapolates observed centres; stateless between calls."""
+    """Extrapolates observed centres; what it says depends on the observation alone."""
 
-    reach_s: float
+    reach_s: float = float("inf")
     """How far ahead [s] the extrapolation is used; beyond it obstacles are taken to rest where they then are."""
 
     @abstractmethod
+    def forecast(self, observation: Observation, times_s: FloatArray) -> Forecast:
+        """Forecast for absolute times (T,) [s], ascending, all at or after the last observation."""
+
     def positions(self, observation: Observation, times_s: FloatArray) -> FloatArray:
-        """Predicted centres (T, m, 3) [m] at absolute times (T,) [s], all at or after the last observation."""
+        """Predicted centres (T, m, 3) [m]; see ``forecast``."""
+        return self.forecast(observation, times_s).centers_m
 
     def bounds(self, observation: Observation, times_s: FloatArray) -> FloatArray:
-        """Standard deviation (T, m) [m] of the predicted centres' error; 0 where a predictor claims to be exact."""
-        return np.zeros((len(times_s), len(observation.radii_m)))
+        """Standard deviation (T, m) [m] of the predicted centres' error; see ``forecast``."""
+        return self.forecast(observation, times_s).bounds_m
 
     def predict(self, observation: Observation, horizon_s: float, step_s: float) -> Prediction:
         """Predict from the last observation to ``horizon_s`` later, every ``step_s`` [s]; at rest past ``reach_s``."""
-        observation = without_gaps(observation)
         count = max(2, int(np.ceil(min(horizon_s, self.reach_s) / step_s - 1e-9)) + 1)
         now = float(observation.times_s[-1])
-        times = now + step_s * np.arange(count, dtype=np.float64)
-        centers, bounds = self.positions(observation, times), self.bounds(observation, times)
+        centers, bounds = self.forecast(observation, now + step_s * np.arange(count, dtype=np.float64))
         return Prediction(now, step_s, centers, observation.radii_m, bounds)

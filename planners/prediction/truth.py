@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from planners.prediction.observation import Observation
-from planners.prediction.predictor import Predictor
+from planners.prediction.predictor import Forecast, Predictor
 from scenarios.arm import FloatArray
 from scenarios.obstacle import Obstacle
 
@@ -13,16 +13,14 @@ from scenarios.obstacle import Obstacle
 class TruthPredictor(Predictor):
     """Returns the obstacles' true motion."""
 
-    reach_s = float("inf")
-
     def __init__(self, obstacles: Sequence[Obstacle]) -> None:
         """Take the true obstacles of the scenario."""
         self._obstacles = obstacles
 
-    def positions(self, observation: Observation, times_s: FloatArray) -> FloatArray:
-        """True centres; see ``Predictor.positions``."""
+    def forecast(self, observation: Observation, times_s: FloatArray) -> Forecast:
+        """True centres, no error; see ``Predictor.forecast``."""
         del observation  # the truth needs none
         centers = np.empty((len(times_s), len(self._obstacles), 3))
         for j, obstacle in enumerate(self._obstacles):
             centers[:, j] = obstacle.position(times_s)
-        return centers
+        return Forecast(centers, np.zeros(centers.shape[:2]))
