@@ -20,7 +20,7 @@ CONTACT_M = 1e-4
 KEPT_SHARE = 0.75  # of the smallest clearance seen: advancing proves that no instant has less
 MAX_LOOKS = 1_000_000  # beyond one per timed state; seconds of work. What is not proven by then counts as contact
 
-ORBIT, TRACK = range(2)
+SMOOTH, TRACK = range(2)
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -142,12 +142,15 @@ def _last_by(times, t):
 @kernel
 def obstacle_at(j, t, truth):
     """Centre of obstacle ``j`` at time ``t``, its speed from then on, and how long that speed holds: x, y, z, v, s."""
-    if truth.laws[j] == ORBIT:
-        orbit = truth.orbits[j]
-        c, s = math.cos(orbit[9] * t), math.sin(orbit[9] * t)
-        x = orbit[0] + c * orbit[3] + s * orbit[6]
-        y = orbit[1] + c * orbit[4] + s * orbit[7]
-        z = orbit[2] + c * orbit[5] + s * orbit[8]
+    if truth.laws[j] == SMOOTH:
+        course = truth.courses[j]
+        x, y, z = course[0] + t * course[3], course[1] + t * course[4], course[2] + t * course[5]
+        for w in range(truth.spans[j, 0], truth.spans[j, 1]):
+            wave = truth.waves[w]
+            c, s = math.cos(wave[6] * t), math.sin(wave[6] * t)
+            x += c * wave[0] + s * wave[3]
+            y += c * wave[1] + s * wave[4]
+            z += c * wave[2] + s * wave[5]
         return x, y, z, truth.speeds_m_s[j], math.inf
     points = truth.points[truth.spans[j, 0] : truth.spans[j, 1]]
     last = points.shape[0] - 1

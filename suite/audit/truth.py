@@ -7,8 +7,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from scenarios import Orbit, Scenario, Track
-from suite.audit._kernels import ORBIT, TRACK
+from scenarios import Line, Orbit, Scenario, Track, Wander
+from suite.audit._kernels import SMOOTH, TRACK
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -29,20 +29,22 @@ class Law(Protocol):
 
 
 class Truth(NamedTuple):
-    """m spheres on their laws; an orbit is a row of ``orbits``, a track a span of rows of ``points``."""
+    """m spheres on their laws: smooth ones are a course plus a span of ``waves``, tracks a span of ``points``."""
 
     radii_m: FloatArray
     """Radii, shape (m,), [m]."""
     speeds_m_s: FloatArray
-    """Largest speeds, shape (m,)."""
+    """Speeds that are never exceeded, shape (m,)."""
     laws: npt.NDArray[np.int64]
-    """ORBIT or TRACK, shape (m,)."""
-    orbits: FloatArray
-    """Centre, cosine and sine amplitudes [m], rate [rad/s]; shape (m, 10)."""
+    """SMOOTH or TRACK, shape (m,)."""
+    courses: FloatArray
+    """Position at t = 0 [m] and velocity [m/s] without the waves, shape (m, 6)."""
+    waves: FloatArray
+    """Cosine and sine amplitudes [m] and rate [rad/s], shape (W, 7)."""
     points: FloatArray
     """Time [s] and position [m], straight in between, shape (P, 4)."""
     spans: npt.NDArray[np.int64]
-    """First row of ``points`` and the one after the last, shape (m, 2)."""
+    """First row of ``waves`` or ``points`` and the one after the last, shape (m, 2)."""
 
 
 class _Packed(NamedTuple):
@@ -50,13 +52,13 @@ class _Packed(NamedTuple):
 
     law: int
     speed_m_s: float
-    orbit: FloatArray
-    points: FloatArray
+    course: FloatArray
+    rows: FloatArray
+    """Of ``Truth.waves`` or ``Truth.points``."""
     pad_m: float = 0.0
 
 
-_NO_ORBIT = np.zeros(10)
-_NO_POINTS = np.empty((0, 4))
+_NO_COURSE = np.zeros(6)
 
 
 def pack(scenario: Scenario) -> Truth:
@@ -68,35 +70,62 @@ def pack(scenario: Scenario) -> Truth:
 
 def assemble(radii_m: Sequence[float], packed: Sequence[_Packed]) -> Truth:
     """Put packed obstacles behind one another."""
-    ends = np.cumsum([0, *(len(one.points) for one in packed)])
+    waves, points, spans = [np.empty((0, 7))], [np.empty((0, 4))], []
+    for one in packed:
+        rows = waves if one.law == SMOOTH else points
+        first = sum(map(len, rows))
+        rows.append(one.rows)
+        spans.append((first, first + len(one.rows)))
     return Truth(
         radii_m=np.array([radius + one.pad_m for radius, one in zip(radii_m, packed, strict=True)]),
         speeds_m_s=np.array([one.speed_m_s for one in packed], dtype=np.float64),
         laws=np.array([one.law for one in packed], dtype=np.int64),
-        orbits=np.array([one.orbit for one in packed]).reshape(-1, 10),
-        points=np.concatenate([_NO_POINTS, *(one.points for one in packed)]),
-        spans=np.stack([ends[:-1], ends[1:]], axis=1),
+        courses=np.array([one.course for one in packed]).reshape(-1, 6),
+        waves=np.concatenate(waves),
+        points=np.concatenate(points),
+        spans=np.array(spans, dtype=np.int64).reshape(-1, 2),
     )
 
 
 def pack_law(law: Law, end_s: float) -> _Packed:
     """Pack one law of motion, to be followed until ``end_s`` [s]."""
     if isinstance(law, Orbit):
-        return _orbit(law)
+        return _smooth(law.center_m, (0.0, 0.0, 0.0), _orbit(law))
+    if isinstance(law, Line):
+        return _smooth(law.point_m, law.velocity_m_s, np.empty((0, 7)))
+    if isinstance(law, Wander):
+        return _smooth(law.center_m, (0.0, 0.0, 0.0), _wander(law))
     if isinstance(law, Track):
         points = np.column_stack([law.times_s, law.positions_m])
-        return _Packed(TRACK, law.speed_bound_m_s, _NO_ORBIT, points)
+        return _Packed(TRACK, law.speed_bound_m_s, _NO_COURSE, points)
     return _resampled(law, end_s)
 
 
-def _orbit(law: Orbit) -> _Packed:
-    """The circle's two amplitudes, read off the law itself at t = 0 and a quarter turn later."""
+def _smooth(point: npt.ArrayLike, velocity: npt.ArrayLike, waves: FloatArray) -> _Packed:
+    """A course with waves on it, and the sum of their largest speeds (docs/audit.md).
+
+    A wave runs through an ellipse whose longer half-axis is the largest singular value of its two amplitudes.
+    """
+    speed = float(np.linalg.norm(velocity))
+    for wave in waves:
+        speed += abs(wave[6]) * float(np.linalg.norm(wave[:6].reshape(2, 3), ord=2))
+    return _Packed(SMOOTH, speed * (1.0 + 1e-12), np.concatenate([point, velocity]), waves)
+
+
+def _orbit(law: Orbit) -> FloatArray:
+    """One wave (1, 7): the circle's two amplitudes, read off the law itself at t = 0 and a quarter turn later."""
     rate = law.rate_rad_s if abs(law.rate_rad_s) > _AT_REST_RAD_S else 0.0
     quarter_s = 0.5 * math.pi / rate if rate else 0.0
-    center = np.asarray(law.center_m)
-    amplitudes = law.position(np.array([0.0, quarter_s])) - center
-    row = np.concatenate([center, amplitudes.reshape(-1), [rate]])
-    return _Packed(ORBIT, law.speed_bound_m_s, row, _NO_POINTS)
+    amplitudes = law.position(np.array([0.0, quarter_s])) - np.asarray(law.center_m)
+    return np.concatenate([amplitudes.reshape(-1), [rate]])[None]
+
+
+def _wander(law: Wander) -> FloatArray:
+    """Waves (W, 7): a * sin(p + r t) is a sin(p) * cos(r t) + a cos(p) * sin(r t)."""
+    amplitudes = np.array([wave.amplitude_m for wave in law.waves])
+    phases = np.array([[wave.phase_rad] for wave in law.waves])
+    rates = np.array([[wave.rate_rad_s] for wave in law.waves])
+    return np.hstack([np.sin(phases) * amplitudes, np.cos(phases) * amplitudes, rates])
 
 
 def _resampled(law: Law, end_s: float) -> _Packed:
@@ -105,4 +134,4 @@ def _resampled(law: Law, end_s: float) -> _Packed:
     wanted = math.ceil(0.5 * speed * end_s / _RESAMPLING_ERROR_M)
     times = np.linspace(0.0, end_s, min(max(wanted, 1), _MAX_SAMPLES) + 1)
     points = np.column_stack([times, law.position(times)])
-    return _Packed(TRACK, speed, _NO_ORBIT, points, pad_m=0.5 * speed * float(times[1]))
+    return _Packed(TRACK, speed, _NO_COURSE, points, pad_m=0.5 * speed * float(times[1]))
