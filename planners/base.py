@@ -21,6 +21,8 @@ class ArmPlanner(ob.Planner):
         self.problem = problem
         self.state_checks = 0
         """Configurations checked by this planner's own kernels, beside those the shared checker counts."""
+        self.motion_checks = 0
+        """Motions checked by this planner's own kernels, beside those the shared validator counts."""
 
     def motion_filter(self, now_s: float) -> EdgeFilter | None:
         """Which motions between two whole steps from ``now_s`` the validator allows; None where limits do not bind."""

@@ -1,11 +1,19 @@
 """The registry: one entry per planner, and the notation in which users name them."""
 
+import math
 from collections.abc import Callable
 from typing import Any, Literal, NamedTuple
 
 from ompl import base as ob
 from pydantic import BaseModel
 
+from planners.continuous.planner import (
+    LARGEST_BOUND_M,
+    ClairvoyantPlanner,
+    ClairvoyantSettings,
+    ContinuousPlanner,
+    ContinuousSettings,
+)
 from planners.heuristics import HeuristicSettings, PurgingPlanner, WaitingPlanner
 from planners.potential_field import PotentialFieldPlanner, PotentialFieldSettings
 from planners.problem import SpaceTimeProblem
@@ -16,7 +24,7 @@ from scenarios.spec import split_specs as split_texts
 
 Commitment = Literal["path", "while_valid", "step"]
 """When to ask a planner again: at the end of its path (Algorithm 2), as soon as the newest prediction makes the rest
-of its path invalid, or at every step."""
+of its path invalid or that path does not lead to the goal, or at every step."""
 
 
 class PlannerEntry(NamedTuple):
@@ -34,8 +42,16 @@ class PlannerEntry(NamedTuple):
     """Spacing of the predicted positions it is given [s]."""
     prediction_margin: float = 0.0
     """Obstacles are grown by this many standard deviations of their predicted position's error."""
+    largest_bound_m: float = math.inf
+    """Standard deviations are taken for no more than this [m]."""
+    predictor: str = "cubic"
+    """The predictor it works with unless a run asks for another."""
     is_bound: bool = False
     """Sees the true future: shows what is possible and is never ranked."""
+
+    def predictor_for(self, asked: str | None) -> str:
+        """Name of the predictor it works with when a run asks for ``asked``, or for each planner's own (None)."""
+        return "truth" if self.is_bound else asked or self.predictor
 
 
 PLANNERS: dict[str, PlannerEntry] = {
@@ -86,6 +102,30 @@ PLANNERS: dict[str, PlannerEntry] = {
             PotentialFieldPlanner,
             "step",
             lambda _: 1.0,
+        ),
+        PlannerEntry(
+            "temporal-ct",
+            "space-time tree of steered runs, valid at every instant, repaired when the prediction changes",
+            "this suite: docs/temporal-ct.md",
+            ContinuousSettings,
+            ContinuousPlanner,
+            "while_valid",
+            lambda s: float(s.horizon_s),
+            prediction_step_s=0.25,
+            prediction_margin=1.0,
+            largest_bound_m=LARGEST_BOUND_M,
+            predictor="portfolio",
+        ),
+        PlannerEntry(
+            "clairvoyant",
+            "the same search with the true motion, a large budget and restarts",
+            "this suite: docs/temporal-ct.md",
+            ClairvoyantSettings,
+            ClairvoyantPlanner,
+            "path",
+            lambda s: float(s.horizon_s),
+            prediction_step_s=0.25,
+            is_bound=True,
         ),
     )
 }

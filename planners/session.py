@@ -55,9 +55,10 @@ class Session:
         self.commitment = entry.commitment
         self._iterations = getattr(spec.settings, "iterations", None)
         self._horizon_s = entry.horizon_s(spec.settings)
-        self._step_s, self._margin = entry.prediction_step_s, entry.prediction_margin
+        self._step_s = entry.prediction_step_s
+        self._margin, self._largest_bound_m = entry.prediction_margin, entry.largest_bound_m
         self._scenario, self._limits = scenario, limits
-        self._predictor = build_predictor("truth" if entry.is_bound else predictor, scenario)
+        self._predictor = build_predictor(entry.predictor_for(predictor), scenario)
         self._rng = np.random.default_rng(seed)
         _seed_ompl(seed)
         nothing = Prediction(0.0, 1.0, np.empty((2, 0, 3)), np.empty(0), np.empty((2, 0)))
@@ -84,8 +85,10 @@ class Session:
         return Plan(status.asString(), times, path, elapsed, states, motions)
 
     def still_valid(self, times_s: FloatArray, configurations_rad: FloatArray, observation: Observation) -> bool:
-        """Whether the rest of a path, its first state being now, is valid under the newest observation."""
+        """Whether the rest of a path, its first state being now, leads to the goal and is valid as seen now."""
         self._look(observation, float(times_s[0]))
+        if self._problem.query.goal_distance(configurations_rad[-1]) > self._scenario.goal_tolerance_m:
+            return False
         check = self._problem.validator.check
         return all(
             check(configurations_rad[k], times_s[k], configurations_rad[k + 1], times_s[k + 1])
@@ -97,12 +100,14 @@ class Session:
         self._problem.update(self._query(prediction), now_s)
 
     def _query(self, prediction: Prediction) -> Query:
-        scenario, world = self._scenario, prediction.world(self._margin)
+        scenario, world = self._scenario, prediction.world(self._margin, self._largest_bound_m)
         return Query(scenario.arm, scenario.goal, scenario.goal_tolerance_m, prediction, world, self._limits)
 
     def _checks(self) -> tuple[int, int]:
-        own = self._planner.state_checks if isinstance(self._planner, ArmPlanner) else 0
-        return self._problem.checker.checks + own, self._problem.validator.checks
+        states, motions = self._problem.checker.checks, self._problem.validator.checks
+        if isinstance(self._planner, ArmPlanner):
+            return states + self._planner.state_checks, motions + self._planner.motion_checks
+        return states, motions
 
     def _path(self, definition: ob.ProblemDefinition) -> tuple[FloatArray, FloatArray]:
         """Times (k,) and configurations (k, dof) of the solution; empty without one that a planner vouches for.

@@ -52,7 +52,9 @@ def run(
     obstacles: Obstacles = None,
     trials: Trials = None,
     seed: Seed = None,
-    predictor: Annotated[str | None, typer.Option(help="Predictor of obstacle motion. [default: cubic]")] = None,
+    predictor: Annotated[
+        str | None, typer.Option(help="Predictor of obstacle motion. [default: each planner's own]")
+    ] = None,
     limits: Annotated[
         bool | None,
         typer.Option("--limits/--no-limits", help="Hold planners to the arm's motion limits. [default: no]"),

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
-from planners import PREDICTORS, PlannerSpec, parse_planner
+from planners import PLANNERS, PREDICTORS, PlannerSpec, parse_planner
 from scenarios import ContinuumArm, Scenario, generate, load_scenarios
 from scenarios.families import parse_family
 from scenarios.spec import known_name
@@ -35,7 +35,8 @@ class Experiment(BaseModel):
     """Numbers of obstacles; each gets ``trials`` scenarios."""
     trials: Annotated[int, Field(ge=1, le=100_000)] = 10
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
-    predictor: str = "cubic"
+    predictor: str | None = None
+    """Predictor for every planner; each planner's own if None."""
     limits: bool = False
     """Whether planners have to keep to the arm's bending rate and tip speed."""
     noise_mm: Annotated[float, Field(ge=0, le=1000, allow_inf_nan=False)] = 0.0
@@ -66,8 +67,8 @@ class Experiment(BaseModel):
 
     @field_validator("predictor")
     @classmethod
-    def _known_predictor(cls, predictor: str) -> str:
-        return known_name("predictor", predictor, PREDICTORS)
+    def _known_predictor(cls, predictor: str | None) -> str | None:
+        return None if predictor is None else known_name("predictor", predictor, PREDICTORS)
 
     @field_validator("obstacles")
     @classmethod
@@ -105,7 +106,8 @@ class Experiment(BaseModel):
         specs = self.specs()
         for scenario in scenarios:
             for spec in specs:
-                yield TrialTask(scenario, spec, self.predictor, self.limits, self.seed, self.noise_mm, self.dropout)
+                predictor = PLANNERS[spec.name].predictor_for(self.predictor)
+                yield TrialTask(scenario, spec, predictor, self.limits, self.seed, self.noise_mm, self.dropout)
 
     @property
     def name(self) -> str:

@@ -44,12 +44,11 @@ def _bracket(t, world):
 
 
 @kernel
-def section_clearances(q, t, section_length, arm_radius, world, arcs, out):
+def arc_clearances(arcs, t, arm_radius, world, out):
     """Signed distance of each section to the nearest obstacle at time ``t`` into ``out`` (n,) [m]; inf without any.
 
-    ``arcs`` (n, ARC_SIZE) is work space. Returns the smallest entry.
+    ``arcs`` are laid out by ``section_arcs``. Returns the smallest entry.
     """
-    section_arcs(q, section_length, arcs)
     k, share = _bracket(t, world)
     centers, radii = world.centers_m, world.radii_m
     out[:] = math.inf
@@ -64,6 +63,30 @@ def section_clearances(q, t, section_length, arm_radius, world, arcs, out):
             out[i] = min(out[i], gap)
             smallest = min(smallest, gap)
     return smallest
+
+
+@kernel
+def section_clearances(q, t, section_length, arm_radius, world, arcs, out):
+    """``arc_clearances`` of the body at ``q`` (2n,) [rad]; ``arcs`` (n, ARC_SIZE) is work space."""
+    section_arcs(q, section_length, arcs)
+    return arc_clearances(arcs, t, arm_radius, world, out)
+
+
+@kernel
+def motion_bounds(q0, q1, duration, section_length, speed, out):
+    """Bound on how far each section and any obstacle may approach each other over a motion, into ``out`` (n,) [m].
+
+    A point of section i moves at most sum_{j<i} (L/2 + (i-j) L) |dq_j| + (L/2) |dq_i|: docs/audit.md derives it; an
+    obstacle's surface approaches at most at ``speed`` [m/s] for ``duration`` [s].
+    """
+    carried = 0.0  # displacement bound of the section's base over the whole motion
+    turned = 0.0  # bound on its rotation
+    for i in range(out.shape[0]):
+        change = math.hypot(q1[2 * i] - q0[2 * i], q1[2 * i + 1] - q0[2 * i + 1])
+        carried += section_length * turned
+        out[i] = carried + 0.5 * section_length * change + speed * duration
+        carried += 0.5 * section_length * change
+        turned += change
 
 
 @kernel
@@ -82,8 +105,7 @@ def motion_clear_until(q0, t0, q1, t1, margin, tolerance, section_length, arm_ra
     """Share of the motion from (q0, t0) to (q1, t1), linear in bending vectors, that is proven collision-free.
 
     Conservative advancement (Mirtich 1996): a section at distance d cannot touch before d / (its speed bound +
-    obstacle speed), so time may advance by the smallest such quotient over the sections. A point of section i moves at
-    most sum_{j<i} (L/2 + (i-j) L) |dq_j| + (L/2) |dq_i|: docs/audit.md derives it.
+    obstacle speed: ``motion_bounds``), so time may advance by the smallest such quotient over the sections.
 
     Args:
         q0: Bending vectors at the start, shape (2n,), [rad].
@@ -102,14 +124,7 @@ def motion_clear_until(q0, t0, q1, t1, margin, tolerance, section_length, arm_ra
     n = q0.shape[0] // 2
     arcs, gaps, bounds, q = np.empty((n, ARC_SIZE)), np.empty(n), np.empty(n), np.empty(2 * n)
     duration = t1 - t0
-    carried = 0.0  # displacement bound of the section's base over the whole motion
-    turned = 0.0  # bound on its rotation
-    for i in range(n):
-        change = math.hypot(q1[2 * i] - q0[2 * i], q1[2 * i + 1] - q0[2 * i + 1])
-        carried += section_length * turned
-        bounds[i] = carried + 0.5 * section_length * change + world.speed_m_s * duration
-        carried += 0.5 * section_length * change
-        turned += change
+    motion_bounds(q0, q1, duration, section_length, world.speed_m_s, bounds)
     share, states = 0.0, 0
     while True:
         for k in range(2 * n):

@@ -132,23 +132,31 @@ def position_jacobian(q, section_length, arc_length, jacobian):
     for i in range(last + 1):
         share = 1.0 if i < last else inside / section_length
         if share > 0.0:
-            _section_columns(q[2 * i], q[2 * i + 1], arcs[i], section_length, share, point, i, jacobian)
+            _section_columns(arcs[i], section_length, share, point, i, jacobian)
     return point[0], point[1], point[2]
 
 
 @kernel
-def _section_columns(u, v, arc, section_length, share, point, i, jacobian):
+def tip_jacobian(arcs, section_length, jacobian):
+    """Derivative of the end of ``arcs``, laid out by ``section_arcs``, into ``jacobian`` (3, 2n) [m/rad]."""
+    n = arcs.shape[0]
+    for i in range(n):
+        _section_columns(arcs[i], section_length, 1.0, arcs[n - 1, 12:15], i, jacobian)
+
+
+@kernel
+def _section_columns(arc, section_length, share, point, i, jacobian):
     """Write the two columns of section ``i``, cut at ``share`` of its length: how ``point`` moves with (u, v)."""
-    bend = math.sqrt(u * u + v * v)
-    c, s = (u / bend, v / bend) if bend >= MIN_BEND_RAD else (1.0, 0.0)
-    phi, length = max(bend, MIN_BEND_RAD) * share, section_length * share
+    c, s = arc[18], arc[19]
+    phi, length = section_length / arc[15] * share, section_length * share
+    sin, cos = (arc[16], arc[17]) if share == 1.0 else (math.sin(phi), math.cos(phi))
     # The cut section ends at length * (f d + g z); f, g and their derivatives by series where they cancel.
     if phi < 1e-3:
         f_by_phi, g = 0.5 - phi * phi / 24.0, 1.0 - phi * phi / 6.0
         df, dg = 0.5 - phi * phi / 8.0, -phi / 3.0
     else:
-        f_by_phi, g = (1.0 - math.cos(phi)) / (phi * phi), math.sin(phi) / phi
-        df, dg = g - f_by_phi, (math.cos(phi) - g) / phi
+        f_by_phi, g = (1.0 - cos) / (phi * phi), sin / phi
+        df, dg = g - f_by_phi, (cos - g) / phi
     f = f_by_phi * phi
     lever_x = point[0] - arc[0] - length * (f * arc[3] + g * arc[9])
     lever_y = point[1] - arc[1] - length * (f * arc[4] + g * arc[10])

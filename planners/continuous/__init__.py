@@ -1,0 +1,1 @@
+"""``temporal-ct`` and ``clairvoyant``: planning in configuration and time, within limits, valid at every instant."""

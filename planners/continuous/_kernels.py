@@ -1,0 +1,298 @@
+"""A space-time tree whose branches are steered runs: docs/temporal-ct.md tells why.
+
+A branch runs from a node towards a point for the tip and a posture for the body, one steered step after another, until
+it arrives, has run its length, or is blocked. Every step is certified collision-free at every instant.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from planners.steering._kernels import ARRIVED_M, least_duration, steer
+from scenarios.kernels.clearance import arc_clearances, motion_bounds, motion_clear_until
+from scenarios.kernels.jit import kernel
+from scenarios.kernels.kinematics import section_arcs, tip_jacobian
+
+BLOCKED, RAN, REACHED, FULL = range(4)  # how a branch ended
+
+DIRECT_RUNS = 4  # straight for the goal, before anything else is tried
+GOAL_SHARE, EXPLORING_SHARE = 0.4, 0.4  # of the branches; the rest waits, or turns the body with the tip at rest
+REFINING_SHARE = 0.5  # of the branches once the goal was reached
+LONGEST_DETOUR = 20  # steps of a branch that does not run for the goal
+BOUNCE_BACK = 8  # a blocked branch goes back by fewer nodes than this
+FAILURE_WEIGHT = 0.3  # a node from which a branch failed at once looks farther away by this share
+COMPARED = 256  # nodes that the search for a near one looks at, spread evenly over the tree
+CONTACT_M = 1e-4  # as the shared motion validator's
+
+
+class Budget(NamedTuple):
+    """How a search goes about its work, and how much of it."""
+
+    iterations: int
+    """Branches until the goal is reached."""
+    refinements: int
+    """Branches after that."""
+    bounces: int
+    """New postures that a blocked branch tries."""
+    enough: float
+    """A way to the goal this many times as long as the straight one, in time, is not refined further."""
+    duration: float
+    """Of a step [s]."""
+    margin: float
+    """Clearance to keep [m]."""
+
+
+class Tree(NamedTuple):
+    """Preallocated; node k was reached from ``parents[k]`` by one linear motion."""
+
+    states: np.ndarray
+    """Bending vectors, shape (capacity, 2n), [rad]."""
+    tips: np.ndarray
+    """Tip positions, shape (capacity, 3), [m]."""
+    gaps: np.ndarray
+    """Clearance of each section at the node's time, shape (capacity, n), [m]."""
+    times: np.ndarray
+    """Shape (capacity,), [s]."""
+    parents: np.ndarray
+    """Index of the parent, -1 at the root, shape (capacity,)."""
+    failures: np.ndarray
+    """Branches from here that were blocked at once, shape (capacity,)."""
+    counts: np.ndarray
+    """Nodes in the tree, states checked, motions checked."""
+
+
+class Work(NamedTuple):
+    """Work space of a branch."""
+
+    arcs: np.ndarray
+    """After a step, shape (n, ARC_SIZE)."""
+    jacobian: np.ndarray
+    """Of the tip after a step, shape (3, 2n), [m/rad]."""
+    gaps: np.ndarray
+    """Clearances after a step, shape (n,), [m]."""
+    bounds: np.ndarray
+    """How far a section and an obstacle may approach each other in a step, shape (n,), [m]."""
+
+
+@kernel
+def uniform(rng):
+    """Next number in [0, 1) of the splitmix64 generator whose state is ``rng`` (1,) uint64 (Steele et al. 2014)."""
+    rng[0] += np.uint64(0x9E3779B97F4A7C15)
+    z = rng[0]
+    z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    z = z ^ (z >> np.uint64(31))
+    return float(z >> np.uint64(11)) * (1.0 / 9007199254740992.0)
+
+
+@kernel
+def random_posture(rng, max_bend, out):
+    """A configuration uniform over each section's disc of bends into ``out`` (2n,) [rad]."""
+    for i in range(0, out.shape[0], 2):
+        bend, plane = max_bend * math.sqrt(uniform(rng)), 2.0 * math.pi * uniform(rng)
+        out[i], out[i + 1] = bend * math.cos(plane), bend * math.sin(plane)
+
+
+@kernel
+def _append(tree, state, time, parent, work):
+    """Append the node that ``work`` describes; returns its index."""
+    k = tree.counts[0]
+    tree.counts[0] = k + 1
+    tree.states[k] = state
+    tree.tips[k] = work.arcs[work.arcs.shape[0] - 1, 12:15]
+    tree.gaps[k] = work.gaps
+    tree.times[k] = time
+    tree.parents[k] = parent
+    tree.failures[k] = 0
+    return k
+
+
+@kernel
+def _is_clear(tree, node, state, time, margin, body, world, work):
+    """Whether the motion from ``node`` to ``state``, laid out in ``work.arcs``, is free; sets ``work.gaps``.
+
+    Half of a proof is at the start, half at the end: where the clearances there add up to more than arm and obstacle
+    can approach each other on the way, nothing touches. Only a motion that this leaves open is advanced along.
+    """
+    least = margin + CONTACT_M
+    tree.counts[1] += 1
+    tree.counts[2] += 1
+    if arc_clearances(work.arcs, time, body.radius, world, work.gaps) <= least:
+        return False
+    duration = time - tree.times[node]
+    motion_bounds(tree.states[node], state, duration, body.section_length, world.speed_m_s, work.bounds)
+    for i in range(work.gaps.shape[0]):
+        if tree.gaps[node, i] + work.gaps[i] - work.bounds[i] <= 2.0 * least:
+            share, states = motion_clear_until(
+                tree.states[node],
+                tree.times[node],
+                state,
+                time,
+                margin,
+                CONTACT_M,
+                body.section_length,
+                body.radius,
+                world,
+            )
+            tree.counts[1] += states
+            return share >= 1.0
+    return True
+
+
+@kernel
+def plant(tree, times, states, margin, body, world, work):
+    """Start the tree with the leading part of a path, times (k,) [s] and states (k, 2n) [rad], that is still free."""
+    tree.counts[0] = 0
+    for k in range(times.shape[0]):
+        section_arcs(states[k], body.section_length, work.arcs)
+        if k == 0:
+            arc_clearances(work.arcs, times[0], body.radius, world, work.gaps)
+        elif not _is_clear(tree, k - 1, states[k], times[k], margin, body, world, work):
+            break
+        _append(tree, states[k], times[k], k - 1, work)
+
+
+@kernel
+def grow(tree, node, target, stop, steps, end_time, bounces, budget, rng, body, world, step, work):
+    """Grow a branch of at most ``steps`` from ``node`` to ``target``; returns how it ended and its last node.
+
+    The tip stops within ``stop`` [m] of its target, which ends the branch; with 0 the tip stays there while the body
+    turns. A blocked branch goes back a little and tries another posture, up to ``bounces`` times.
+    """
+    first, last_tip = node, work.arcs[work.arcs.shape[0] - 1, 12:15]
+    moved = False  # whether the Jacobian in ``step`` is that of ``node``
+    while steps > 0:
+        if tree.counts[0] >= tree.times.shape[0]:
+            return FULL, node
+        if not moved:
+            section_arcs(tree.states[node], body.section_length, work.arcs)
+            tip_jacobian(work.arcs, body.section_length, step.jacobian)
+            moved = True
+        steer(tree.states[node], tree.tips[node], target, stop, budget.duration, body, step)
+        section_arcs(step.state, body.section_length, work.arcs)
+        tip_jacobian(work.arcs, body.section_length, work.jacobian)
+        duration = least_duration(step.change, tree.tips[node], last_tip, step.jacobian, work.jacobian, body)
+        reached = stop > 0.0 and _distance(last_tip, target.point) <= stop + ARRIVED_M
+        if not reached:
+            duration = max(duration, budget.duration)
+        time = tree.times[node] + duration
+        if time > end_time:
+            return RAN, node
+        if not _is_clear(tree, node, step.state, time, budget.margin, body, world, work):
+            if node == first:
+                tree.failures[node] += 1
+            if bounces == 0:
+                return BLOCKED, node
+            bounces -= 1
+            for _ in range(int(BOUNCE_BACK * uniform(rng))):
+                node = tree.parents[node] if node != first else node
+            random_posture(rng, body.max_bend, target.posture)
+            moved = False
+            continue
+        node = _append(tree, step.state, time, node, work)
+        step.jacobian[:] = work.jacobian
+        steps -= 1
+        if reached:
+            return REACHED, node
+    return RAN, node
+
+
+@kernel
+def _distance(a, b):
+    """Distance between two points (3,) [m]."""
+    return math.sqrt((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 + (a[2] - b[2]) ** 2)
+
+
+@kernel
+def near_node(tree, target, before, goal, stop, bound, rng, body):
+    """A node not later than ``before`` [s] that is near ``target``; -1 when there is none.
+
+    Distance is time: that of the tip's way and those of the bends at their limits, as the root of their squares. Nodes
+    from which the goal cannot be reached before ``bound`` [s] are passed over. In a large tree a share is looked at.
+    """
+    best, found = math.inf, -1
+    stride = 1 + tree.counts[0] // COMPARED
+    per_tip, per_bend = 1.0 / body.tip_speed**2, 1.0 / body.bend_rate**2
+    for k in range(int(stride * uniform(rng)), tree.counts[0], stride):
+        if tree.times[k] > before:
+            continue
+        if bound < math.inf and tree.times[k] + (_distance(tree.tips[k], goal) - stop) / body.tip_speed >= bound:
+            continue
+        way = turn = 0.0
+        for r in range(3):
+            way += (tree.tips[k, r] - target.point[r]) ** 2
+        for c in range(target.posture.shape[0]):
+            turn += (tree.states[k, c] - target.posture[c]) ** 2
+        far = (per_tip * way + per_bend * turn) * (1.0 + FAILURE_WEIGHT * tree.failures[k]) ** 2
+        if far < best:
+            best, found = far, k
+    return found
+
+
+@kernel
+def _ancestor(tree, node, rng):
+    """A node drawn from the path to ``node``."""
+    length, k = 0, node
+    while k >= 0:
+        length, k = length + 1, tree.parents[k]
+    for _ in range(int(length * uniform(rng))):
+        node = tree.parents[node]
+    return node
+
+
+@kernel
+def _choose(tree, tried, trunk, best, goal, stop, end_time, rng, body, target, work):
+    """Where the next branch leaves the tree (-1: nowhere) and how it runs: node, stop [m], steps; sets ``target``."""
+    random_posture(rng, body.max_bend, target.posture)
+    target.point[:] = goal
+    unlimited = tree.times.shape[0]
+    if best < 0 and tried < DIRECT_RUNS:
+        node = 0 if tried < DIRECT_RUNS // 2 else int(trunk * uniform(rng))
+        if tried == 0:
+            target.posture[:] = tree.states[0]
+        return node, stop, unlimited
+    if best >= 0 and uniform(rng) < REFINING_SHARE:
+        return _ancestor(tree, best, rng), stop, unlimited
+    kind, bound = uniform(rng), math.inf if best < 0 else tree.times[best]
+    before = tree.times[0] + (min(bound, end_time) - tree.times[0]) * uniform(rng)
+    if kind < GOAL_SHARE:
+        return near_node(tree, target, before, goal, stop, bound, rng, body), stop, unlimited
+    steps = 1 + int(LONGEST_DETOUR * uniform(rng))
+    if kind < GOAL_SHARE + EXPLORING_SHARE:
+        section_arcs(target.posture, body.section_length, work.arcs)
+        target.point[:] = work.arcs[work.arcs.shape[0] - 1, 12:15]
+        return near_node(tree, target, before, goal, stop, bound, rng, body), 0.0, steps
+    node = int(tree.counts[0] * uniform(rng))
+    target.point[:] = tree.tips[node]
+    if uniform(rng) < 0.5:
+        target.posture[:] = tree.states[node]
+    return node, 0.0, steps
+
+
+@kernel
+def search(goal, stop, end_time, budget, rng, body, world, tree, target, step, work):
+    """Grow the planted tree until its tip is within ``stop`` [m] of ``goal`` (3,), then refine the way there.
+
+    Returns:
+        The node with the earliest arrival (-1: none), and the node that stays safe longest.
+    """
+    root_time, trunk, best = tree.times[0], tree.counts[0], -1
+    soonest = max(0.0, _distance(tree.tips[0], goal) - stop) / body.tip_speed
+    tried, left = 0, budget.iterations
+    while left > 0:
+        node, reach, steps = _choose(tree, tried, trunk, best, goal, stop, end_time, rng, body, target, work)
+        tried, left = tried + 1, left - 1
+        if node < 0:
+            continue
+        latest = end_time if best < 0 else tree.times[best]
+        bounces = budget.bounces if best < 0 else 0
+        ended, last = grow(tree, node, target, reach, steps, latest, bounces, budget, rng, body, world, step, work)
+        if ended == FULL:
+            break
+        if ended == REACHED and (best < 0 or tree.times[last] < tree.times[best]):
+            left = left if best >= 0 else budget.refinements
+            best = last
+            if tree.times[best] - root_time <= budget.enough * soonest:
+                break
+    return best, int(np.argmax(tree.times[: tree.counts[0]]))

@@ -1,0 +1,162 @@
+"""The planners around the search: what they keep between solves, and the margins they try."""
+
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+from ompl import util as ou
+from pydantic import BaseModel, ConfigDict, Field
+
+from planners.base import ArmPlanner
+from planners.continuous import _kernels
+from planners.continuous.workspace import Workspace, body_of
+from planners.problem import SpaceTimeProblem, TimedPath
+from scenarios.arm import FloatArray
+from scenarios.world import SampledWorld
+
+RATE_RESERVE = 0.01
+"""Share of the arm's rates held back: the tip's speed within a step is known from three instants."""
+GOAL_SHARE = 0.9
+"""Share of the goal tolerance at which the tip is to arrive."""
+MARGIN_M = 5e-5
+"""Clearance kept beyond the validator's: obstacles go straight between samples here, not in truth."""
+LARGEST_BOUND_M = 0.005
+"""Error bounds are taken for no more than this: what is less certain will have been observed again by then."""
+
+
+class SearchSettings(BaseModel):
+    """Settings of a search."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    horizon_s: float = Field(default=120.0, gt=0, le=3600, description="latest arrival considered, from now")
+    branches: int = Field(default=300, ge=1, le=10**7, description="budget of a search, in branches of the tree")
+    refinements: int = Field(default=15, ge=0, le=10**7, description="branches after the goal was first reached")
+    enough: float = Field(default=1.1, ge=1, description="no refining below this multiple of the straight way's time")
+    bounces: int = Field(default=5, ge=0, le=1000, description="new postures a blocked branch tries")
+    step_s: float = Field(default=0.5, gt=0.01, le=1, description="duration of a motion of the tree")
+    nodes: int = Field(default=12000, ge=100, le=10**7, description="largest tree")
+
+
+class ContinuousSettings(SearchSettings):
+    """Settings of ``temporal-ct``."""
+
+    retry_branches: int = Field(default=40, ge=1, le=10**7, description="the budget after a solve that failed")
+    margin: float = Field(default=2.0, ge=0, le=10, description="error bounds kept clear of, in standard deviations")
+
+
+class ClairvoyantSettings(SearchSettings):
+    """Settings of ``clairvoyant``."""
+
+    branches: int = Field(default=4000, ge=1, le=10**7, description="budget of a search, in branches of the tree")
+    refinements: int = Field(default=400, ge=0, le=10**7, description="branches after the goal was first reached")
+    enough: float = Field(default=1.0, ge=1, description="no refining below this multiple of the straight way's time")
+    nodes: int = Field(default=40000, ge=100, le=10**7, description="largest tree")
+    restarts: int = Field(default=8, ge=1, le=10**6, description="searches made until one reaches the goal")
+
+
+class Found(NamedTuple):
+    """What a search found."""
+
+    path: TimedPath
+    reaches: bool
+    """Whether the path leads to the goal; otherwise it is the one that stays safe longest."""
+
+
+class TreePlanner(ArmPlanner):
+    """One search after another, the order being for the subclass; they share arrays, random numbers and counts."""
+
+    def __init__(self, problem: SpaceTimeProblem, settings: SearchSettings, name: str) -> None:
+        """Plan on ``problem``; random numbers derive from OMPL's seed."""
+        super().__init__(problem, name)
+        arm = problem.query.arm
+        self._settings, self._body = settings, body_of(arm, RATE_RESERVE)
+        self._workspace = Workspace.of(arm, settings.nodes)
+        self._rng = np.array([ou.RNG().uniformInt(0, 2**31 - 1)], np.uint64)
+
+    def grow_tree(self, trunk: TimedPath, world: SampledWorld, branches: int) -> Found:
+        """Search among the obstacles of ``world``, from what of the path ``trunk`` is free of them."""
+        query, settings, space = self.problem.query, self._settings, self._workspace
+        start_s = float(trunk.times_s[0])
+        stop_m = GOAL_SHARE * query.goal_tolerance_m
+        budget = _kernels.Budget(
+            branches, settings.refinements, settings.bounces, settings.enough, settings.step_s, MARGIN_M
+        )
+        tree, body = space.tree, self._body
+        tree.counts[:] = 0
+        _kernels.plant(tree, trunk.times_s, trunk.configurations_rad, MARGIN_M, body, world, space.work)
+        best, longest = _kernels.search(
+            query.goal_m, stop_m, start_s + settings.horizon_s, budget, self._rng, body, world, *space
+        )
+        self.state_checks += int(tree.counts[1])
+        self.motion_checks += int(tree.counts[2])
+        return Found(space.path_to(best if best >= 0 else longest), best >= 0)
+
+
+class ContinuousPlanner(TreePlanner):
+    """``temporal-ct``: replans from the free part of its last path; evades where no path to the goal is found."""
+
+    def __init__(self, problem: SpaceTimeProblem, settings: ContinuousSettings) -> None:
+        """Plan on ``problem`` with a budget for each solve."""
+        super().__init__(problem, settings, "temporal-ct")
+        self._branches, self._retry_branches = settings.branches, settings.retry_branches
+        self._margin = settings.margin
+        self._last: Found | None = None
+
+    def search(self, q: FloatArray, now_s: float, stop: Callable[[], bool]) -> TimedPath | None:
+        """A path to the goal with as wide a margin as can be had; else the one that stays safe longest."""
+        trunk = self._rest_of_last_path(q, now_s)
+        branches = self._branches if self._last is None or self._last.reaches else self._retry_branches
+        found: Found | None = None
+        for world in self._worlds():
+            if found is not None and (found.reaches or stop()):
+                break
+            tried = self.grow_tree(trunk, world, branches)
+            # Widest margin first: a path with less is safer only if it stays so for longer.
+            if found is None or tried.reaches or tried.path.times_s[-1] > found.path.times_s[-1] + 5.0:
+                found = tried
+            branches = max(self._retry_branches, branches // 3)
+        self._last = found
+        return found.path if found is not None and len(found.path.times_s) > 1 else None
+
+    def _worlds(self) -> Iterator[SampledWorld]:
+        """The predicted obstacles with the whole margin, half of it and none."""
+        prediction = self.problem.query.prediction
+        certain = self._margin == 0.0 or not prediction.bounds_m.any()
+        for share in (0.0,) if certain else (1.0, 0.5, 0.0):
+            yield prediction.world(share * self._margin, LARGEST_BOUND_M)
+
+    def _rest_of_last_path(self, q: FloatArray, now_s: float) -> TimedPath:
+        """What is left of the last path, from the present state on; the present state alone when it is not on it."""
+        here = TimedPath(np.array([now_s]), q[None])
+        if self._last is None:
+            return here
+        times, path = self._last.path
+        ahead = times > now_s + 1e-9
+        if not ahead.any():
+            return here
+        expected = np.array([np.interp(now_s, times, column) for column in path.T])
+        if np.abs(expected - q).max() > 1e-9:
+            return here
+        return TimedPath(np.append(now_s, times[ahead]), np.vstack([q, path[ahead]]))
+
+
+class ClairvoyantPlanner(TreePlanner):
+    """``clairvoyant``: restarts a large search until one reaches the goal."""
+
+    def __init__(self, problem: SpaceTimeProblem, settings: ClairvoyantSettings) -> None:
+        """Plan on ``problem``, whose prediction is the truth."""
+        super().__init__(problem, settings, "clairvoyant")
+        self._restarts, self._branches = settings.restarts, settings.branches
+
+    def search(self, q: FloatArray, now_s: float, stop: Callable[[], bool]) -> TimedPath | None:
+        """The first path to the goal; else the one that stays safe longest."""
+        here, world = TimedPath(np.array([now_s]), q[None]), self.problem.query.world
+        found: Found | None = None
+        for _ in range(self._restarts):
+            if found is not None and (found.reaches or stop()):
+                break
+            tried = self.grow_tree(here, world, self._branches)
+            if found is None or tried.reaches or tried.path.times_s[-1] > found.path.times_s[-1]:
+                found = tried
+        return found.path if found is not None and len(found.path.times_s) > 1 else None

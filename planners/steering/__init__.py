@@ -1,0 +1,1 @@
+"""One short motion at a time: the tip runs straight while the body turns towards a posture."""
