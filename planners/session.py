@@ -9,6 +9,7 @@ from ompl import base as ob
 from ompl import util as ou
 
 from planners.base import ArmPlanner
+from planners.configurations import lattice_for
 from planners.goals import GoalConfigurations
 from planners.prediction import Observation, Prediction, build_predictor
 from planners.problem import Query, SpaceTimeProblem, read_state
@@ -121,6 +122,18 @@ class Session:
             return np.empty(0), np.empty((0, dof))
         states = [read_state(state, dof) for state in definition.getSolutionPath().getStates()]
         return np.array([t for _, t in states]), np.array([q for q, _ in states])
+
+
+def check_fit(specs: Sequence[PlannerSpec], arm: ContinuumArm) -> None:
+    """Refuse planners whose settings do not fit ``arm``, before anything is built or written.
+
+    Raises:
+        ScenarioError: A lattice of configurations would be too large.
+    """
+    for spec in specs:
+        spacing_rad = getattr(spec.settings, "spacing_rad", None)
+        if spacing_rad is not None:
+            lattice_for(arm, spacing_rad)
 
 
 def warm_up(specs: Sequence[PlannerSpec], arm: ContinuumArm) -> None:
