@@ -1,7 +1,7 @@
 """The world: arm, obstacles, scenario files, generator families and collision; knows no planner."""
 
 from scenarios.arm import ContinuumArm
-from scenarios.collision import clearance, clearances, is_motion_valid, is_state_valid
+from scenarios.collision import are_states_valid, clearance, clearances, is_motion_valid, is_state_valid
 from scenarios.errors import ScenarioError
 from scenarios.families import FAMILIES, generate, start_is_free
 from scenarios.files import load_scenarios, save_scenarios
@@ -25,6 +25,7 @@ __all__ = [
     "Track",
     "Wander",
     "Wave",
+    "are_states_valid",
     "clearance",
     "clearances",
     "generate",

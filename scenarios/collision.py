@@ -5,8 +5,9 @@ import numpy.typing as npt
 
 from scenarios.arm import ContinuumArm, FloatArray
 from scenarios.errors import ScenarioError
+from scenarios.kernels import batch
 from scenarios.kernels import clearance as kernels
-from scenarios.world import SampledWorld
+from scenarios.world import SampledWorld, obstacles_at
 
 # Advancing along a motion stops this close to contact (design: section 5's certificate).
 CONTACT_TOLERANCE_M = 1e-4
@@ -43,6 +44,22 @@ def clearances(
 def is_state_valid(arm: ContinuumArm, q: npt.ArrayLike, time_s: float, world: SampledWorld) -> bool:
     """Whether the arm at ``q`` (dof,) [rad] is free of every obstacle at ``time_s`` [s]."""
     return clearance(arm, q, time_s, world) > 0.0
+
+
+def are_states_valid(
+    arm: ContinuumArm, configurations: npt.ArrayLike, time_s: float, world: SampledWorld
+) -> npt.NDArray[np.bool_]:
+    """Whether each configuration (N, dof) [rad] is free of every obstacle at ``time_s`` [s]: (N,).
+
+    Many times faster per state than ``is_state_valid``.
+
+    Raises:
+        ScenarioError: Wrong shapes, numbers that are not finite, bends past the limit.
+    """
+    q = arm.check_configurations(configurations)
+    centers, radii = obstacles_at(world, time_s)
+    free: npt.NDArray[np.bool_] = batch.states_free(q, arm.section_length_m, centers, radii + arm.radius_m)
+    return free
 
 
 def is_motion_valid(

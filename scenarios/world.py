@@ -47,3 +47,12 @@ def sample_world(obstacles: Sequence[Obstacle], start_s: float, end_s: float, st
     for j, obstacle in enumerate(obstacles):
         centers[:, j] = obstacle.position(times)
     return make_world(start_s, step_s, centers, np.array([o.radius_m for o in obstacles]))
+
+
+def obstacles_at(world: SampledWorld, time_s: float) -> tuple[FloatArray, FloatArray]:
+    """Centres (m, 3) and radii (m,) [m] at ``time_s`` [s]."""
+    passed = float(np.clip((time_s - world.start_s) / world.step_s, 0.0, len(world.centers_m) - 1))
+    k = min(int(passed), len(world.centers_m) - 2)
+    before, after = 1.0 - (passed - k), passed - k
+    centers = before * world.centers_m[k] + after * world.centers_m[k + 1]
+    return centers, before * world.radii_m[k] + after * world.radii_m[k + 1]

@@ -229,7 +229,7 @@ def _experiment(preset: str | None, given: dict[str, Any]) -> Experiment:
     from suite.experiment import make_experiment, preset_fields
 
     fields = (preset_fields(preset) if preset else {}) | given
-    clash = [name for name in ("family", "obstacles", "trials") if name in given]
+    clash = [name for name in ("family", "arm", "obstacles", "trials") if name in given]
     if fields.get("scenario_files") and clash:
         raise _usage(f"--{clash[0]}: found beside --scenarios, allowed without: the files say it all")
     if not fields.get("planners"):
