@@ -193,6 +193,21 @@ def check(files: Annotated[list[Path], typer.Argument(help="Scenario files.")]) 
 
 
 @app.command()
+def audit(
+    trajectories: Annotated[Path, typer.Argument(help="CSV: scenario_id, planner, time_s, u1_rad, v1_rad, ...")],
+    scenarios: Annotated[Path, typer.Argument(help="Scenario file that holds every scenario named there.")],
+    engine: Annotated[
+        Literal["certificate", "fcl"], typer.Option(help="Conservative advancement, or FCL sampled densely.")
+    ] = "certificate",
+) -> None:
+    """Judge trajectories from anywhere against the true motion of the obstacles."""
+    from suite.audit.command import audit_file
+
+    for line in audit_file(trajectories, scenarios, engine):
+        print(line)
+
+
+@app.command()
 def version() -> None:
     """Print the versions of the suite and of what its numbers depend on."""
     from suite.manifest import DISTRIBUTION, installed, versions
