@@ -20,7 +20,7 @@ SPEED_RADII = 1.0
 """Plausible speeds, where too little was seen to tell: about one radius of the obstacle per second."""
 HORIZONS = (1, 2, 3, 5, 8, 12, 20)
 """Steps ahead at which past forecasts are compared with what came."""
-BACK = (1, 2, 3, 5, 8, 12, 20, 33, 54)
+BACK = (1, 2, 4, 8, 16, 32)
 """Steps back from the present at which past forecasts are made."""
 FEWEST = 4
 """Observations that a past forecast is made from at the least."""

@@ -12,8 +12,10 @@ import numpy as np
 from planners.prediction._kernels import invert, line_through, window_start
 from scenarios.kernels.jit import kernel
 
-STEPS = 12
-"""Gauss-Newton steps on one history at the most; a start from a shorter history takes two or three."""
+STEPS = 5
+"""Gauss-Newton steps on one history at the most; a start from a shorter history takes about two."""
+ENOUGH = 0.02
+"""A fit has converged when a step lowers the sum of squares by no more than this share of the noise's variance."""
 SMALL_RAD = 1e-2
 """Turned angle below which the turn is written as a series."""
 
@@ -44,56 +46,72 @@ def frame_of(v, c, axes):
 
 
 @kernel
-def turn(t, speed, curvature, rows):
-    """Place along (u) and towards the centre (w) after ``t``, and its derivatives into ``rows`` (3, 5).
+def turn(t, speed, curvature, sine, cosine):
+    """The turn after ``t``, whose angle has the given sine and cosine.
 
-    Rows 0 and 1: of u and w by the two in-plane position components, the two of velocity, and curvature. Row 2: of the
-    place across the plane by position, velocity and curvature across it, in the first three entries.
+    Returns:
+        Place along (u) and towards the centre (w); per unit of speed (a, b); derivatives of u and w by curvature (c, d)
+        and of the place across the plane by curvature across it (e). The other derivatives of (u, w) are
+        ``t * (cosine, sine)`` by speed and ``t * (-b, a)`` by velocity inwards; ``t * a`` by velocity across.
     """
     x = curvature * speed * t
     if abs(x) < SMALL_RAD:
-        sine, cosine = math.sin(x), math.cos(x)
         x2 = x * x
         a, b = 1.0 - x2 / 6.0 + x2 * x2 / 120.0, x * (0.5 - x2 / 24.0)
-        du, dw, e = -x / 3.0 + x * x2 / 30.0, 0.5 - x2 / 8.0 + x2 * x2 / 144.0, 0.5 - x2 / 24.0 + x2 * x2 / 720.0
+        c, d, e = x * (x2 / 30.0 - 1.0 / 3.0), 0.5 - x2 / 8.0 + x2 * x2 / 144.0, 0.5 - x2 / 24.0 + x2 * x2 / 720.0
     else:
-        sine, cosine = math.sin(x), math.cos(x)
         a, b = sine / x, (1.0 - cosine) / x
-        du, dw, e = (cosine - a) / x, (sine - b) / x, b / x
-    square = (speed * t) ** 2
-    rows[0, 0], rows[0, 1], rows[0, 2], rows[0, 3], rows[0, 4] = 1.0, 0.0, t * cosine, -t * b, square * du
-    rows[1, 0], rows[1, 1], rows[1, 2], rows[1, 3], rows[1, 4] = 0.0, 1.0, t * sine, t * a, square * dw
-    rows[2, 0], rows[2, 1], rows[2, 2] = 1.0, t * a, square * e
-    return speed * t * a, speed * t * b
+        c, d, e = (cosine - a) / x, (sine - b) / x, b / x
+    way = speed * t
+    return way * a, way * b, a, b, way * way * c, way * way * d, way * way * e
 
 
 @kernel
-def normal_equations(times, positions, first, last, now, state, axes, inside, across, rows):
-    """Sum ``inside`` (5, 6) and ``across`` (3, 4), matrix and right side, over the observations first..last.
+def normal_equations(times, positions, first, last, state, axes, inside, across):
+    """Matrix (its lower half) and right side of ``inside`` (5, 6) and ``across`` (3, 4) from observations first..last.
 
-    Returns the sum of squared residuals and the number of observations that were not lost.
+    The unknowns are, in the plane, two components of position, two of velocity and curvature; across it position,
+    velocity and curvature. Returns the sum of squared residuals and the number of observations that were not lost.
     """
     speed, curvature = frame_of(state[1], state[2], axes)
-    inside[:], across[:] = 0.0, 0.0
+    rate = speed * curvature
     squares, seen = 0.0, 0
-    for i in range(first, last + 1):
+    r0 = r1 = r2 = r3 = r4 = 0.0
+    h20 = h21 = h22 = h30 = h31 = h32 = h33 = h40 = h41 = h42 = h43 = h44 = 0.0
+    s0 = s1 = s2 = g10 = g11 = g20 = g21 = g22 = 0.0
+    t, step, sine, cosine, step_sine, step_cosine = 0.0, 0.0, 0.0, 1.0, 0.0, 1.0
+    for i in range(last, first - 1, -1):
+        if i < last:  # the angle's sine and cosine from those before it; times are mostly one step apart
+            if times[i] - times[i + 1] != step:
+                step = times[i] - times[i + 1]
+                step_sine, step_cosine = math.sin(rate * step), math.cos(rate * step)
+            sine, cosine = sine * step_cosine + cosine * step_sine, cosine * step_cosine - sine * step_sine
+            t = times[i] - times[last]
         if math.isnan(positions[i, 0]):
             continue
         seen += 1
-        u, w = turn(times[i] - now, speed, curvature, rows)
+        u, w, a, b, c, d, e = turn(t, speed, curvature, sine, cosine)
         dx, dy, dz = positions[i, 0] - state[0, 0], positions[i, 1] - state[0, 1], positions[i, 2] - state[0, 2]
         along = dx * axes[0, 0] + dy * axes[0, 1] + dz * axes[0, 2] - u
         inward = dx * axes[1, 0] + dy * axes[1, 1] + dz * axes[1, 2] - w
         off = dx * axes[2, 0] + dy * axes[2, 1] + dz * axes[2, 2]
         squares += along * along + inward * inward + off * off
-        for a in range(5):
-            for b in range(a + 1):
-                inside[a, b] += rows[0, a] * rows[0, b] + rows[1, a] * rows[1, b]
-            inside[a, 5] += rows[0, a] * along + rows[1, a] * inward
-        for a in range(3):
-            for b in range(a + 1):
-                across[a, b] += rows[2, a] * rows[2, b]
-            across[a, 3] += rows[2, a] * off
+        p0, p1, q0, q1 = t * cosine, t * sine, -t * b, t * a
+        h20, h21, h22 = h20 + p0, h21 + p1, h22 + t * t
+        h30, h31, h32, h33 = h30 + q0, h31 + q1, h32 + p0 * q0 + p1 * q1, h33 + q0 * q0 + q1 * q1
+        h40, h41, h42, h43, h44 = h40 + c, h41 + d, h42 + p0 * c + p1 * d, h43 + q0 * c + q1 * d, h44 + c * c + d * d
+        r0, r1, r2 = r0 + along, r1 + inward, r2 + p0 * along + p1 * inward
+        r3, r4 = r3 + q0 * along + q1 * inward, r4 + c * along + d * inward
+        g10, g11, g20, g21, g22 = g10 + q1, g11 + q1 * q1, g20 + e, g21 + q1 * e, g22 + e * e
+        s0, s1, s2 = s0 + off, s1 + q1 * off, s2 + e * off
+    inside[0, 0] = inside[1, 1] = seen
+    inside[1, 0] = 0.0
+    inside[2, 0], inside[2, 1], inside[2, 2] = h20, h21, h22
+    inside[3, 0], inside[3, 1], inside[3, 2], inside[3, 3] = h30, h31, h32, h33
+    inside[4, 0], inside[4, 1], inside[4, 2], inside[4, 3], inside[4, 4] = h40, h41, h42, h43, h44
+    inside[0, 5], inside[1, 5], inside[2, 5], inside[3, 5], inside[4, 5] = r0, r1, r2, r3, r4
+    across[0, 0], across[1, 0], across[1, 1], across[2, 0], across[2, 1], across[2, 2] = seen, g10, g11, g20, g21, g22
+    across[0, 3], across[1, 3], across[2, 3] = s0, s1, s2
     return squares, seen
 
 
@@ -125,11 +143,11 @@ def moved(state, axes, speed, curvature, d, e, out):
 @kernel
 def advance(state, t):
     """Let the motion run for ``t`` [s], in place."""
-    axes, rows = np.empty((3, 3)), np.empty((3, 5))
+    axes = np.empty((3, 3))
     speed, curvature = frame_of(state[1], state[2], axes)
-    u, w = turn(t, speed, curvature, rows)
     angle = curvature * speed * t
     sine, cosine = math.sin(angle), math.cos(angle)
+    u, w, _, _, _, _, _ = turn(t, speed, curvature, sine, cosine)
     for k in range(3):
         state[0, k] += u * axes[0, k] + w * axes[1, k]
         state[1, k] = speed * (cosine * axes[0, k] + sine * axes[1, k])
@@ -146,30 +164,24 @@ def refine(times, positions, first, last, floor, speed_scale, curvature_scale, s
     Returns:
         The noise's variance per coordinate and the degrees of freedom it was estimated from.
     """
-    now = times[last]
-    axes, rows, trial = np.empty((3, 3)), np.empty((3, 5)), state.copy()
-    best_inside, best_across = np.empty((5, 6)), np.empty((3, 4))
+    axes, before = np.empty((3, 3)), state.copy()
+    kept_inside, kept_across = np.empty((5, 6)), np.empty((3, 4))
     d, e = np.zeros(5), np.zeros(3)
-    variance, freedom, damping = 0.0, 1.0, 0.0
-    best_squares, best_prior, gain = math.inf, 0.0, math.inf
+    variance, freedom, damping, kept_squares, kept_prior = 0.0, 1.0, 0.0, math.inf, 0.0
     for step in range(STEPS):
-        squares, seen = normal_equations(times, positions, first, last, now, trial, axes, inside, across, rows)
-        speed, curvature = frame_of(trial[1], trial[2], axes)
+        squares, seen = normal_equations(times, positions, first, last, state, axes, inside, across)
+        speed, curvature = frame_of(state[1], state[2], axes)
         prior = (speed / speed_scale) ** 2 + (curvature / curvature_scale) ** 2
-        better = step == 0 or squares + variance * prior <= best_squares + variance * best_prior
-        if better:
-            state[:] = trial
-            best_inside[:], best_across[:] = inside, across
-            best_squares, best_prior = squares, prior
+        if step == 0 or squares + variance * prior <= kept_squares + variance * kept_prior:
+            before[:], kept_inside[:], kept_across[:] = state, inside, across
+            kept_squares, kept_prior = squares, prior
             freedom = max(1.0, 3.0 * seen - 8.0)
             variance = max(squares / freedom, floor * floor)
-            damping *= 0.1
-            if gain < 1e-3 * variance:
-                break
-        else:
+            damping = 0.1 * damping if damping > 1e-6 else 0.0
+        else:  # a step too far
+            state[:], inside[:], across[:] = before, kept_inside, kept_across
+            speed, curvature = frame_of(state[1], state[2], axes)
             damping = max(10.0 * damping, 1e-3)
-        inside[:], across[:] = best_inside, best_across
-        speed, curvature = frame_of(state[1], state[2], axes)
         weigh_prior(variance, speed, curvature, speed_scale, curvature_scale, inside, across)
         for a in range(5):
             inside[a, a] *= 1.0 + damping
@@ -188,12 +200,9 @@ def refine(times, positions, first, last, floor, speed_scale, curvature_scale, s
             for b in range(3):
                 e[a] += across[a, b] * across[b, 3]
             gain += e[a] * across[a, 3]
-        moved(state, axes, speed, curvature, d, e, trial)
-    inside[:], across[:] = best_inside, best_across
-    speed, curvature = frame_of(state[1], state[2], axes)
-    weigh_prior(variance, speed, curvature, speed_scale, curvature_scale, inside, across)
-    invert(inside, 5)
-    invert(across, 3)
+        moved(before, axes, speed, curvature, d, e, state)
+        if gain < ENOUGH * variance:  # a step this small needs no second look
+            break
     return variance, freedom
 
 
@@ -242,23 +251,28 @@ def start_state(times, positions, first, last, floor, curvature_scale, state):
 
 
 @kernel
-def spread(t, speed, curvature, inside, across, rows):
-    """Variance of the place after ``t`` per unit of noise, as ``circular`` counts it; and the place."""
-    u, w = turn(t, speed, curvature, rows)
-    uu, uw, ww, off = 0.0, 0.0, 0.0, 0.0
-    for a in range(5):
-        left, right = 0.0, 0.0
-        for b in range(5):
-            left += inside[a, b] * rows[0, b]
-            right += inside[a, b] * rows[1, b]
-        uu += left * rows[0, a]
-        uw += left * rows[1, a]
-        ww += right * rows[1, a]
-    for a in range(3):
-        for b in range(3):
-            off += across[a, b] * rows[2, a] * rows[2, b]
-    largest = max(0.5 * (uu + ww) + math.sqrt(0.25 * (uu - ww) ** 2 + uw * uw), off)
-    return u, w, 0.5 * (uu + ww + off + largest)
+def spread(t, speed, curvature, inside, across):
+    """The place after ``t`` along and towards the centre, and the variance of its error per unit of noise.
+
+    That variance is the mean of the error's mean square length and its variance in the worst direction: twice its root
+    holds 95 % of normal errors whether they spread in one, two or three directions.
+    """
+    angle = curvature * speed * t
+    sine, cosine = math.sin(angle), math.cos(angle)
+    u, w, a, b, c, d, e = turn(t, speed, curvature, sine, cosine)
+    p0, p1, q0, q1 = t * cosine, t * sine, -t * b, t * a
+    i = inside
+    uu = i[0, 0] + i[2, 2] * p0 * p0 + i[3, 3] * q0 * q0 + i[4, 4] * c * c
+    uu += 2.0 * (i[0, 2] * p0 + i[0, 3] * q0 + i[0, 4] * c + i[2, 3] * p0 * q0 + i[2, 4] * p0 * c + i[3, 4] * q0 * c)
+    ww = i[1, 1] + i[2, 2] * p1 * p1 + i[3, 3] * q1 * q1 + i[4, 4] * d * d
+    ww += 2.0 * (i[1, 2] * p1 + i[1, 3] * q1 + i[1, 4] * d + i[2, 3] * p1 * q1 + i[2, 4] * p1 * d + i[3, 4] * q1 * d)
+    uw = i[0, 1] + i[0, 2] * p1 + i[0, 3] * q1 + i[0, 4] * d + i[1, 2] * p0 + i[1, 3] * q0 + i[1, 4] * c
+    uw += i[2, 2] * p0 * p1 + i[3, 3] * q0 * q1 + i[4, 4] * c * d
+    uw += i[2, 3] * (p0 * q1 + q0 * p1) + i[2, 4] * (p0 * d + c * p1) + i[3, 4] * (q0 * d + c * q1)
+    off = across[0, 0] + across[1, 1] * q1 * q1 + across[2, 2] * e * e
+    off += 2.0 * (across[0, 1] * q1 + across[0, 2] * e + across[1, 2] * q1 * e)
+    worst = max(0.5 * (uu + ww) + math.sqrt(0.25 * (uu - ww) ** 2 + uw * uw), off)
+    return u, w, 0.5 * (uu + ww + off + worst)
 
 
 @kernel
@@ -285,7 +299,7 @@ def follow(times, positions, radii, origins, targets, ahead, window, floor, spee
     past, past_var = np.zeros((*targets.shape, m, 3)), np.zeros((*targets.shape, m))
     centers, var = np.empty((ahead.shape[0], m, 3)), np.empty((ahead.shape[0], m))
     noise = np.empty((n_origins, m))
-    state, axes, rows = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 5))
+    state, axes = np.empty((3, 3)), np.empty((3, 3))
     inside, across = np.empty((5, 6)), np.empty((3, 4))
     for j in range(m):
         seen = positions[:, j]
@@ -311,12 +325,12 @@ def follow(times, positions, radii, origins, targets, ahead, window, floor, spee
                 for h in range(targets.shape[1]):
                     i = targets[o, h]
                     if i >= 0:
-                        u, w, v = spread(times[i] - times[last], speed, curvature, inside, across, rows)
+                        u, w, v = spread(times[i] - times[last], speed, curvature, inside, across)
                         past[o, h, j] = state[0] + u * axes[0] + w * axes[1]
                         past_var[o, h, j] = scale * v
             else:
                 for h in range(ahead.shape[0]):
-                    u, w, v = spread(ahead[h], speed, curvature, inside, across, rows)
+                    u, w, v = spread(ahead[h], speed, curvature, inside, across)
                     for k in range(3):
                         centers[h, j, k] = state[0, k] + u * axes[0, k] + w * axes[1, k]
                     var[h, j] = scale * v
