@@ -236,6 +236,8 @@ def static_path(start, goal, purged, offsets, half, cube_m):
     """
     side = 2 * half
     gx, gy, gz = goal // (side * side), goal // side % side, goal % side
+    if purged[goal] or offsets[goal] == offsets[goal + 1]:  # else the search would visit every cube to find no path
+        return np.empty(0, np.int64)
     cost = np.full(side * side * side, np.inf)
     parent = np.full(side * side * side, -1, np.int32)
     cost[start] = 0.0
