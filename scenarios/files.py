@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import reprlib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -15,13 +16,20 @@ from scenarios.scenario import Scenario
 
 MAX_FILE_BYTES = 64 * 1024 * 1024
 MAX_SCENARIOS = 100_000
+MAX_DEPTH = 50
 SUFFIXES = (".yaml", ".yml", ".json", ".jsonl")
 
 
 def _parse_yaml(text: str) -> Any:
-    """Safe YAML without aliases: a few lines of nested aliases can stand for gigabytes."""
-    if any(isinstance(event, yaml.AliasEvent) for event in yaml.parse(text, Loader=yaml.CSafeLoader)):
-        raise yaml.YAMLError("found a YAML alias, allowed plain values only")
+    """Safe YAML of plain values, so that a small file cannot stand for gigabytes or minutes."""
+    depth = 0
+    for event in yaml.parse(text, Loader=yaml.CSafeLoader):
+        if isinstance(event, yaml.AliasEvent) or getattr(event, "tag", None) is not None:
+            raise yaml.YAMLError("found a YAML alias or tag, allowed plain values only")
+        depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
+        # libyaml takes time quadratic in the depth.
+        if depth > MAX_DEPTH:
+            raise yaml.YAMLError(f"found values nested deeper than {MAX_DEPTH}")
     return yaml.load(text, Loader=yaml.CSafeLoader)
 
 
@@ -72,23 +80,28 @@ def _suffix(file: Path) -> str:
 
 def _read(file: Path) -> list[Any]:
     """The file's entries as plain Python values."""
-    suffix = _suffix(file)
+    suffix, text = _suffix(file), _text(file)
+    try:
+        if suffix == ".jsonl":
+            return [json.loads(line) for line in text.splitlines() if line.strip()]
+        content = json.loads(text) if suffix == ".json" else _parse_yaml(text)
+    # ValueError: besides broken JSON, a number of thousands of digits or a date such as 2024-13-45.
+    except (ValueError, yaml.YAMLError, RecursionError) as error:
+        first = " ".join(str(error).split())[:200] or type(error).__name__
+        raise ScenarioError(f"{file}: not valid {suffix[1:].upper()} (truncated?): {first}") from None
+    return content if isinstance(content, list) else [content]
+
+
+def _text(file: Path) -> str:
     try:
         size = file.stat().st_size
         if size > MAX_FILE_BYTES:
             raise ScenarioError(f"{file}: found {size} bytes, allowed {MAX_FILE_BYTES}")
-        text = file.read_text(encoding="utf-8")
-        if suffix == ".jsonl":
-            return [json.loads(line) for line in text.splitlines() if line.strip()]
-        content = json.loads(text) if suffix == ".json" else _parse_yaml(text)
+        return file.read_text(encoding="utf-8")
     except OSError as error:
         raise ScenarioError(f"{file}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
         raise ScenarioError(f"{file}: found bytes that are not UTF-8, allowed UTF-8 text") from None
-    except (json.JSONDecodeError, yaml.YAMLError, RecursionError) as error:
-        first = " ".join(str(error).split())[:200] or type(error).__name__
-        raise ScenarioError(f"{file}: not valid {suffix[1:].upper()} (truncated?): {first}") from None
-    return content if isinstance(content, list) else [content]
 
 
 def _validate(file: Path, index: int, count: int, entry: Any) -> Scenario:
@@ -102,12 +115,16 @@ def _validate(file: Path, index: int, count: int, entry: Any) -> Scenario:
         shown = "nothing" if first["type"] == "missing" else _short(found)
         allowed = first["msg"].removeprefix("Value error, ")
         if first["type"] == "extra_forbidden":
-            allowed = f"no such field; a scenario has {', '.join(Scenario.model_fields)}"
+            known = f"; a scenario has {', '.join(Scenario.model_fields)}" if len(first["loc"]) == 1 else ""
+            allowed = f"no such field{known}"
         raise ScenarioError(f"{file}: {prefix}{where}: found {shown}, allowed: {allowed}") from None
 
 
 def _short(value: Any) -> str:
     if isinstance(value, float) and not math.isfinite(value):
         return str(value)
-    text = repr(value)
+    try:
+        text = reprlib.repr(value)  # bounded in depth, unlike repr
+    except ValueError:
+        return "a number of thousands of digits"
     return text if len(text) <= 60 else text[:57] + "..."

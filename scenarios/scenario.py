@@ -16,6 +16,7 @@ STEP_S = 1.0
 """A step is one second (paper, section V)."""
 
 _Bend = Annotated[float, Field(ge=-math.pi, le=math.pi, allow_inf_nan=False)]
+_Finite = Annotated[float, Field(allow_inf_nan=False)]
 _Name = Annotated[str, Field(min_length=1, max_length=120, pattern=r"^[A-Za-z0-9._-]+$")]
 
 
@@ -30,8 +31,8 @@ class Scenario(BaseModel):
     schema_version: Literal[1] = 1
     id: _Name
     family: _Name = "custom"
-    seed: int = Field(default=0, ge=0)
-    parameters: dict[str, float] = Field(default_factory=dict, max_length=50, description="of the generator")
+    seed: int = Field(default=0, ge=0, lt=2**63)
+    parameters: dict[str, _Finite] = Field(default_factory=dict, max_length=50, description="of the generator")
     arm: ContinuumArm = ContinuumArm()
     start_rad: tuple[_Bend, ...] = Field(description="start configuration (u1, v1, u2, v2, ...)")
     goal_m: Point = Field(description="where the tip is to go")
