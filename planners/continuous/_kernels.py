@@ -9,8 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from planners.certificate._kernels import is_clear
 from planners.steering._kernels import ARRIVED_M, least_duration, steer
-from scenarios.kernels.clearance import arc_clearances, motion_bounds, motion_clear_until
+from scenarios.kernels.clearance import arc_clearances
 from scenarios.kernels.jit import kernel
 from scenarios.kernels.kinematics import section_arcs, tip_jacobian
 
@@ -23,7 +24,6 @@ LONGEST_DETOUR = 20  # steps of a branch that does not run for the goal
 BOUNCE_BACK = 8  # a blocked branch goes back by fewer nodes than this
 FAILURE_WEIGHT = 0.3  # a node from which a branch failed at once looks farther away by this share
 COMPARED = 256  # nodes that the search for a near one looks at, spread evenly over the tree
-CONTACT_M = 1e-4  # as the shared motion validator's
 
 
 class Budget(NamedTuple):
@@ -50,8 +50,6 @@ class Tree(NamedTuple):
     """Bending vectors, shape (capacity, 2n), [rad]."""
     tips: np.ndarray
     """Tip positions, shape (capacity, 3), [m]."""
-    gaps: np.ndarray
-    """Clearance of each section at the node's time, shape (capacity, n), [m]."""
     times: np.ndarray
     """Shape (capacity,), [s]."""
     parents: np.ndarray
@@ -60,19 +58,6 @@ class Tree(NamedTuple):
     """Branches from here that were blocked at once, shape (capacity,)."""
     counts: np.ndarray
     """Nodes in the tree, states checked, motions checked."""
-
-
-class Work(NamedTuple):
-    """Work space of a branch."""
-
-    arcs: np.ndarray
-    """After a step, shape (n, ARC_SIZE)."""
-    jacobian: np.ndarray
-    """Of the tip after a step, shape (3, 2n), [m/rad]."""
-    gaps: np.ndarray
-    """Clearances after a step, shape (n,), [m]."""
-    bounds: np.ndarray
-    """How far a section and an obstacle may approach each other in a step, shape (n,), [m]."""
 
 
 @kernel
@@ -95,13 +80,14 @@ def random_posture(rng, max_bend, out):
 
 
 @kernel
-def _append(tree, state, time, parent, work):
-    """Append the node that ``work`` describes; returns its index."""
+def _append(tree, state, tip, time, parent):
+    """Append a node; returns its index."""
     k = tree.counts[0]
     tree.counts[0] = k + 1
-    tree.states[k] = state
-    tree.tips[k] = work.arcs[work.arcs.shape[0] - 1, 12:15]
-    tree.gaps[k] = work.gaps
+    for c in range(state.shape[0]):
+        tree.states[k, c] = state[c]
+    for r in range(3):
+        tree.tips[k, r] = tip[r]
     tree.times[k] = time
     tree.parents[k] = parent
     tree.failures[k] = 0
@@ -109,77 +95,65 @@ def _append(tree, state, time, parent, work):
 
 
 @kernel
-def _is_clear(tree, node, state, time, margin, body, world, work):
-    """Whether the motion from ``node`` to ``state``, laid out in ``work.arcs``, is free; sets ``work.gaps``.
-
-    Half of a proof is at the start, half at the end: where the clearances there add up to more than arm and obstacle
-    can approach each other on the way, nothing touches. Only a motion that this leaves open is advanced along.
-    """
-    least = margin + CONTACT_M
-    tree.counts[1] += 1
-    tree.counts[2] += 1
-    if arc_clearances(work.arcs, time, body.radius, world, work.gaps) <= least:
-        return False
-    duration = time - tree.times[node]
-    motion_bounds(tree.states[node], state, duration, body.section_length, world.speed_m_s, work.bounds)
-    for i in range(work.gaps.shape[0]):
-        if tree.gaps[node, i] + work.gaps[i] - work.bounds[i] <= 2.0 * least:
-            share, states = motion_clear_until(
-                tree.states[node],
-                tree.times[node],
-                state,
-                time,
-                margin,
-                CONTACT_M,
-                body.section_length,
-                body.radius,
-                world,
-            )
-            tree.counts[1] += states
-            return share >= 1.0
-    return True
+def _stand(q, time, body, world, stack):
+    """Lay out arcs and clearances at ``q`` in row 0 of the stack; returns the tip, a view of the arcs."""
+    section_arcs(q, body.section_length, stack.arcs[0])
+    arc_clearances(stack.arcs[0], time, body.radius, world, stack.gaps[0])
+    return stack.arcs[0, stack.arcs.shape[1] - 1, 12:15]
 
 
 @kernel
-def plant(tree, times, states, margin, body, world, work):
+def _is_free(tree, node, change, time, margin, body, world, stack):
+    """Whether the step from ``node`` to ``time``, laid out in the stack, is free; counts what it took."""
+    free, states = is_clear(
+        tree.states[node], tree.times[node], change, time, margin, body.section_length, body.radius, world, stack
+    )
+    tree.counts[1] += states
+    tree.counts[2] += 1
+    return free
+
+
+@kernel
+def plant(tree, times, states, margin, body, world, step, stack):
     """Start the tree with the leading part of a path, times (k,) [s] and states (k, 2n) [rad], that is still free."""
     tree.counts[0] = 0
-    for k in range(times.shape[0]):
-        section_arcs(states[k], body.section_length, work.arcs)
-        if k == 0:
-            arc_clearances(work.arcs, times[0], body.radius, world, work.gaps)
-        elif not _is_clear(tree, k - 1, states[k], times[k], margin, body, world, work):
+    _append(tree, states[0], _stand(states[0], times[0], body, world, stack), times[0], -1)
+    tip = stack.arcs[1, stack.arcs.shape[1] - 1, 12:15]
+    for k in range(1, times.shape[0]):
+        step.change[:] = states[k] - states[k - 1]
+        section_arcs(states[k], body.section_length, stack.arcs[1])
+        if not _is_free(tree, k - 1, step.change, times[k], margin, body, world, stack):
             break
-        _append(tree, states[k], times[k], k - 1, work)
+        _append(tree, states[k], tip, times[k], k - 1)
 
 
 @kernel
-def grow(tree, node, target, stop, steps, end_time, bounces, budget, rng, body, world, step, work):
+def grow(tree, node, target, stop, steps, end_time, bounces, budget, rng, body, world, step, stack):
     """Grow a branch of at most ``steps`` from ``node`` to ``target``; returns how it ended and its last node.
 
     The tip stops within ``stop`` [m] of its target, which ends the branch; with 0 the tip stays there while the body
     turns. A blocked branch goes back a little and tries another posture, up to ``bounces`` times.
     """
-    first, last_tip = node, work.arcs[work.arcs.shape[0] - 1, 12:15]
-    moved = False  # whether the Jacobian in ``step`` is that of ``node``
+    first, standing = node, False
+    tip = stack.arcs[1, stack.arcs.shape[1] - 1, 12:15]
     while steps > 0:
         if tree.counts[0] >= tree.times.shape[0]:
             return FULL, node
-        if not moved:
-            section_arcs(tree.states[node], body.section_length, work.arcs)
-            tip_jacobian(work.arcs, body.section_length, step.jacobian)
-            moved = True
+        if not standing:
+            _stand(tree.states[node], tree.times[node], body, world, stack)
+            tip_jacobian(stack.arcs[0], body.section_length, step.jacobian)
+            standing = True
         steer(tree.states[node], tree.tips[node], target, stop, budget.duration, body, step)
-        section_arcs(step.state, body.section_length, work.arcs)
-        tip_jacobian(work.arcs, body.section_length, work.jacobian)
-        duration = least_duration(step.change, tree.tips[node], last_tip, step.jacobian, work.jacobian, body)
-        reached = stop > 0.0 and _distance(last_tip, target.point) <= stop + ARRIVED_M
+        section_arcs(step.state, body.section_length, stack.arcs[1])
+        tip_jacobian(stack.arcs[1], body.section_length, step.jacobian_after)
+        duration = least_duration(tree.tips[node], tip, body, step)
+        reached = stop > 0.0 and _distance(tip, target.point) <= stop + ARRIVED_M
         if not reached:
             duration = max(duration, budget.duration)
         time = tree.times[node] + duration
         if time > end_time:
             return RAN, node
-        if not _is_clear(tree, node, step.state, time, budget.margin, body, world, work):
+        if not _is_free(tree, node, step.change, time, budget.margin, body, world, stack):
             if node == first:
                 tree.failures[node] += 1
             if bounces == 0:
@@ -188,10 +162,10 @@ def grow(tree, node, target, stop, steps, end_time, bounces, budget, rng, body, 
             for _ in range(int(BOUNCE_BACK * uniform(rng))):
                 node = tree.parents[node] if node != first else node
             random_posture(rng, body.max_bend, target.posture)
-            moved = False
+            standing = False
             continue
-        node = _append(tree, step.state, time, node, work)
-        step.jacobian[:] = work.jacobian
+        node = _append(tree, step.state, tip, time, node)
+        step.jacobian[:] = step.jacobian_after
         steps -= 1
         if reached:
             return REACHED, node
@@ -242,7 +216,7 @@ def _ancestor(tree, node, rng):
 
 
 @kernel
-def _choose(tree, tried, trunk, best, goal, stop, end_time, rng, body, target, work):
+def _choose(tree, tried, trunk, best, goal, stop, end_time, rng, body, target, stack):
     """Where the next branch leaves the tree (-1: nowhere) and how it runs: node, stop [m], steps; sets ``target``."""
     random_posture(rng, body.max_bend, target.posture)
     target.point[:] = goal
@@ -260,8 +234,8 @@ def _choose(tree, tried, trunk, best, goal, stop, end_time, rng, body, target, w
         return near_node(tree, target, before, goal, stop, bound, rng, body), stop, unlimited
     steps = 1 + int(LONGEST_DETOUR * uniform(rng))
     if kind < GOAL_SHARE + EXPLORING_SHARE:
-        section_arcs(target.posture, body.section_length, work.arcs)
-        target.point[:] = work.arcs[work.arcs.shape[0] - 1, 12:15]
+        section_arcs(target.posture, body.section_length, stack.arcs[1])
+        target.point[:] = stack.arcs[1, stack.arcs.shape[1] - 1, 12:15]
         return near_node(tree, target, before, goal, stop, bound, rng, body), 0.0, steps
     node = int(tree.counts[0] * uniform(rng))
     target.point[:] = tree.tips[node]
@@ -271,7 +245,7 @@ def _choose(tree, tried, trunk, best, goal, stop, end_time, rng, body, target, w
 
 
 @kernel
-def search(goal, stop, end_time, budget, rng, body, world, tree, target, step, work):
+def search(goal, stop, end_time, budget, rng, body, world, tree, target, step, stack):
     """Grow the planted tree until its tip is within ``stop`` [m] of ``goal`` (3,), then refine the way there.
 
     Returns:
@@ -281,13 +255,13 @@ def search(goal, stop, end_time, budget, rng, body, world, tree, target, step, w
     soonest = max(0.0, _distance(tree.tips[0], goal) - stop) / body.tip_speed
     tried, left = 0, budget.iterations
     while left > 0:
-        node, reach, steps = _choose(tree, tried, trunk, best, goal, stop, end_time, rng, body, target, work)
+        node, reach, steps = _choose(tree, tried, trunk, best, goal, stop, end_time, rng, body, target, stack)
         tried, left = tried + 1, left - 1
         if node < 0:
             continue
         latest = end_time if best < 0 else tree.times[best]
         bounces = budget.bounces if best < 0 else 0
-        ended, last = grow(tree, node, target, reach, steps, latest, bounces, budget, rng, body, world, step, work)
+        ended, last = grow(tree, node, target, reach, steps, latest, bounces, budget, rng, body, world, step, stack)
         if ended == FULL:
             break
         if ended == REACHED and (best < 0 or tree.times[last] < tree.times[best]):

@@ -52,7 +52,7 @@ class ClairvoyantSettings(SearchSettings):
     refinements: int = Field(default=400, ge=0, le=10**7, description="branches after the goal was first reached")
     enough: float = Field(default=1.0, ge=1, description="no refining below this multiple of the straight way's time")
     nodes: int = Field(default=40000, ge=100, le=10**7, description="largest tree")
-    restarts: int = Field(default=8, ge=1, le=10**6, description="searches made until one reaches the goal")
+    restarts: int = Field(default=20, ge=1, le=10**6, description="searches made until one reaches the goal")
 
 
 class Found(NamedTuple):
@@ -84,7 +84,7 @@ class TreePlanner(ArmPlanner):
         )
         tree, body = space.tree, self._body
         tree.counts[:] = 0
-        _kernels.plant(tree, trunk.times_s, trunk.configurations_rad, MARGIN_M, body, world, space.work)
+        _kernels.plant(tree, trunk.times_s, trunk.configurations_rad, MARGIN_M, body, world, space.step, space.stack)
         best, longest = _kernels.search(
             query.goal_m, stop_m, start_s + settings.horizon_s, budget, self._rng, body, world, *space
         )
@@ -121,9 +121,11 @@ class ContinuousPlanner(TreePlanner):
 
     def _worlds(self) -> Iterator[SampledWorld]:
         """The predicted obstacles with the whole margin, half of it and none."""
-        prediction = self.problem.query.prediction
-        certain = self._margin == 0.0 or not prediction.bounds_m.any()
-        for share in (0.0,) if certain else (1.0, 0.5, 0.0):
+        query, prediction = self.problem.query, self.problem.query.prediction
+        if not prediction.bounds_m.any():  # whatever the margin, these are the obstacles
+            yield query.world
+            return
+        for share in (1.0, 0.5, 0.0):
             yield prediction.world(share * self._margin, LARGEST_BOUND_M)
 
     def _rest_of_last_path(self, q: FloatArray, now_s: float) -> TimedPath:

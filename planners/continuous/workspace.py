@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from planners.continuous._kernels import Tree, Work
+from planners.certificate._kernels import HALVINGS, Stack
+from planners.continuous._kernels import Tree
 from planners.problem import TimedPath
 from planners.steering._kernels import Body, Step, Target
 from scenarios.arm import ContinuumArm
@@ -17,7 +18,7 @@ class Workspace(NamedTuple):
     tree: Tree
     target: Target
     step: Step
-    work: Work
+    stack: Stack
 
     @classmethod
     def of(cls, arm: ContinuumArm, capacity: int) -> "Workspace":
@@ -27,15 +28,25 @@ class Workspace(NamedTuple):
             Tree(
                 states=np.empty((capacity, dof)),
                 tips=np.empty((capacity, 3)),
-                gaps=np.empty((capacity, n)),
                 times=np.empty(capacity),
                 parents=np.empty(capacity, np.int64),
                 failures=np.empty(capacity, np.int64),
                 counts=np.zeros(3, np.int64),
             ),
             Target(point=np.empty(3), posture=np.empty(dof)),
-            Step(state=np.empty(dof), change=np.empty(dof), pull=np.empty(dof), jacobian=np.empty((3, dof))),
-            Work(arcs=np.empty((n, ARC_SIZE)), jacobian=np.empty((3, dof)), gaps=np.empty(n), bounds=np.empty(n)),
+            Step(
+                state=np.empty(dof),
+                change=np.empty(dof),
+                pull=np.empty(dof),
+                jacobian=np.empty((3, dof)),
+                jacobian_after=np.empty((3, dof)),
+            ),
+            Stack(
+                shares=np.empty(HALVINGS + 2),
+                arcs=np.empty((HALVINGS + 2, n, ARC_SIZE)),
+                gaps=np.empty((HALVINGS + 2, n)),
+                state=np.empty(dof),
+            ),
         )
 
     def path_to(self, node: int) -> TimedPath:

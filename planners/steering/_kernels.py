@@ -48,6 +48,8 @@ class Step(NamedTuple):
     """Work space, shape (2n,), [rad]."""
     jacobian: np.ndarray
     """Of the tip before the step, shape (3, 2n), [m/rad]."""
+    jacobian_after: np.ndarray
+    """The same after it."""
 
 
 @kernel
@@ -103,19 +105,12 @@ def steer(q, tip, target, stop, duration, body, step):
 
 
 @kernel
-def least_duration(change, start, end, before, after, body):
-    """Shortest time [s] in which a short linear motion keeps to the rates of bends and tip.
+def least_duration(start, end, body, step):
+    """Shortest time [s] in which ``step``, between tips ``start`` and ``end`` (3,) [m], keeps to the arm's rates.
 
     The tip's speed is looked at at both ends and in the middle, where Simpson's rule gives it from the way travelled.
-
-    Args:
-        change: Of the bending vectors over the motion, shape (2n,), [rad].
-        start: Tip before, shape (3,), [m].
-        end: Tip after, shape (3,), [m].
-        before: Jacobian of the tip before, shape (3, 2n), [m/rad].
-        after: The same after.
-        body: The arm.
     """
+    change, before, after = step.change, step.jacobian, step.jacobian_after
     turned = 0.0
     for i in range(0, change.shape[0], 2):
         turned = max(turned, change[i] ** 2 + change[i + 1] ** 2)

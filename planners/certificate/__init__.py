@@ -1,0 +1,1 @@
+"""A proof that a short motion is free of obstacles, from few states."""

@@ -1,0 +1,148 @@
+import numpy as np
+import pytest
+
+from planners import Observation, Session, parse_planner
+from planners.certificate import _kernels as certificate
+from planners.continuous.workspace import Workspace, body_of
+from planners.steering import _kernels as steering
+from scenarios import ContinuumArm, Obstacle, Orbit, Scenario, generate, make_world
+from scenarios.kernels.clearance import clearances
+from scenarios.kernels.kinematics import section_arcs, tip_jacobian
+from suite.audit import audit
+
+ARM = ContinuumArm()
+SCENARIOS = generate("orbit", 3, 4, 1003)
+
+
+def observe(scenario: Scenario, now_s: float = 0.0) -> Observation:
+    times = np.arange(-scenario.observation_s, now_s + 1.0)
+    centers = np.stack([o.position(times) for o in scenario.obstacles], axis=1)
+    return Observation(times, centers, np.array([o.radius_m for o in scenario.obstacles]))
+
+
+def session(scenario: Scenario, text: str = "temporal-ct", predictor: str = "truth", seed: int = 1) -> Session:
+    return Session(parse_planner(text), scenario, predictor=predictor, limits=False, seed=seed)
+
+
+def random_configuration(rng: np.random.Generator) -> np.ndarray:
+    bend, plane = np.pi * np.sqrt(rng.uniform(size=3)), rng.uniform(-np.pi, np.pi, size=3)
+    return np.stack([bend * np.cos(plane), bend * np.sin(plane)], axis=1).reshape(-1)
+
+
+def still_sphere(center_m: tuple[float, float, float], radius_m: float) -> Obstacle:
+    return Obstacle(
+        radius_m=radius_m,
+        motion=Orbit(center_m=center_m, radius_m=0.0, normal=(0.0, 0.0, 1.0), rate_rad_s=0.0, phase_rad=0.0),
+    )
+
+
+@pytest.mark.parametrize("text", ["temporal-ct", "clairvoyant[restarts=2,branches=300]"])
+@pytest.mark.parametrize("scenario", SCENARIOS, ids=lambda scenario: scenario.id)
+def test_paths_under_the_true_motion_are_executable(scenario: Scenario, text: str) -> None:
+    planned = session(scenario, text)
+    plan = planned.plan(scenario.start, 0.0, observe(scenario))
+    judged = audit(scenario, plan.times_s, plan.configurations_rad)
+    assert judged.executable.violation_kind == ""
+    if plan.status == "Exact solution":
+        assert judged.executable.success
+        assert planned.still_valid(plan.times_s, plan.configurations_rad, observe(scenario))
+
+
+def test_a_seed_gives_the_same_path_and_another_seed_another() -> None:
+    scenario = SCENARIOS[0]
+    paths = [session(scenario, seed=s).plan(scenario.start, 0.0, observe(scenario)) for s in (5, 5, 6)]
+    assert np.array_equal(paths[0].configurations_rad, paths[1].configurations_rad)
+    assert paths[0].configurations_rad.shape != paths[2].configurations_rad.shape or not np.array_equal(
+        paths[0].configurations_rad, paths[2].configurations_rad
+    )
+
+
+def test_a_new_plan_builds_on_the_free_part_of_the_last() -> None:
+    scenario = SCENARIOS[0]
+    planned = session(scenario)
+    first = planned.plan(scenario.start, 0.0, observe(scenario))
+    at_two = np.array([np.interp(2.0, first.times_s, column) for column in first.configurations_rad.T])
+    again = planned.plan(at_two, 2.0, observe(scenario, 2.0))
+    assert again.status == first.status
+    assert again.times_s[-1] <= first.times_s[-1] + 1e-9
+
+
+def test_without_a_way_to_the_goal_the_path_is_free_for_as_long_as_can_be() -> None:
+    # The goal lies inside a sphere; the arm is free to stay where it is.
+    start = np.full(6, 0.2)
+    scenario = Scenario(
+        id="shut",
+        arm=ARM,
+        start_rad=tuple(start.tolist()),
+        goal_m=(0.2, 0.0, 0.2),
+        obstacles=(still_sphere((0.2, 0.0, 0.2), 0.05),),
+    )
+    planned = session(scenario, "temporal-ct[branches=200,horizon_s=20]")
+    plan = planned.plan(start, 0.0, observe(scenario))
+    assert plan.status == "Approximate solution"
+    assert plan.times_s[-1] >= 19.0
+    assert audit(scenario, plan.times_s, plan.configurations_rad).executable.violation_kind == "short of goal"
+    assert not planned.still_valid(plan.times_s, plan.configurations_rad, observe(scenario))
+
+
+def test_an_arm_that_cannot_move_at_all_gets_no_path() -> None:
+    start = np.full(6, 0.2)
+    scenario = Scenario(
+        id="stuck",
+        arm=ARM,
+        start_rad=tuple(start.tolist()),
+        goal_m=(0.2, 0.0, 0.2),
+        obstacles=(still_sphere((0.0, 0.0, 0.0), 0.05),),
+    )
+    assert not len(session(scenario).plan(start, 0.0, observe(scenario)).times_s)
+
+
+@pytest.mark.parametrize("margin", [0.0, 0.004])
+def test_a_certificate_is_never_wrong_and_seldom_withheld(margin: float) -> None:
+    rng = np.random.default_rng(7)
+    stack, body = Workspace.of(ARM, 10).stack, body_of(ARM, 0.0)
+    given = free_in_all = 0
+    shares = np.linspace(0.0, 1.0, 101)
+    for _ in range(400):
+        q0, q1 = random_configuration(rng), random_configuration(rng)
+        q1 = q0 + rng.uniform(0.02, 0.3) * (q1 - q0)
+        places = rng.uniform(-0.3, 0.3, size=(3, 3))
+        moved = places + rng.uniform(-0.02, 0.02, size=(3, 3))
+        world = make_world(0.0, 1.0, np.stack([places, moved]), np.full(3, 0.02))
+        dense = clearances(q0 + shares[:, None] * (q1 - q0), shares, ARM.section_length_m, ARM.radius_m, world)
+        section_arcs(q0, ARM.section_length_m, stack.arcs[0])
+        section_arcs(q1, ARM.section_length_m, stack.arcs[1])
+        certificate.arc_clearances(stack.arcs[0], 0.0, body.radius, world, stack.gaps[0])
+        free, _ = certificate.is_clear(
+            q0, 0.0, q1 - q0, 1.0, margin, body.section_length, body.radius, world, stack
+        )  # fmt: skip
+        if dense[0] <= margin + 1e-4:
+            continue  # a motion starts where the last one ended, free
+        assert not free or dense.min() > margin
+        free_in_all += dense.min() > margin + 3e-4
+        given += free and dense.min() > margin + 3e-4
+    assert free_in_all > 100
+    assert given >= 0.99 * free_in_all
+
+
+def test_a_step_takes_the_tip_straight_and_keeps_to_the_rates() -> None:
+    rng = np.random.default_rng(3)
+    space, body = Workspace.of(ARM, 10), body_of(ARM, 0.01)
+    step, target = space.step, space.target
+    for _ in range(200):
+        q = random_configuration(rng)
+        target.posture[:] = random_configuration(rng)
+        section_arcs(q, ARM.section_length_m, space.stack.arcs[0])
+        tip = space.stack.arcs[0, 2, 12:15].copy()
+        target.point[:] = tip + rng.normal(scale=0.1, size=3)
+        tip_jacobian(space.stack.arcs[0], ARM.section_length_m, step.jacobian)
+        steering.steer(q, tip, target, 0.0, 0.5, body, step)
+        section_arcs(step.state, ARM.section_length_m, space.stack.arcs[1])
+        tip_jacobian(space.stack.arcs[1], ARM.section_length_m, step.jacobian_after)
+        duration = steering.least_duration(tip, space.stack.arcs[1, 2, 12:15], body, step)
+        states = q + np.linspace(0.0, 1.0, 201)[:, None] * step.change
+        speeds = np.linalg.norm(np.diff(ARM.tips(states), axis=0), axis=1) * 200 / duration
+        rates = np.linalg.norm(step.change.reshape(3, 2), axis=1) / duration
+        assert speeds.max() <= ARM.max_tip_speed_m_s
+        assert rates.max() <= ARM.max_bend_rate_rad_s
+        assert np.linalg.norm(step.state.reshape(3, 2), axis=1).max() <= ARM.max_bend_rad + 1e-12
