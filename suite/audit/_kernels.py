@@ -26,38 +26,34 @@ FloatArray = npt.NDArray[np.float64]
 
 
 class Work(NamedTuple):
-    """Work space of a look at n sections and m obstacles."""
+    """Work space of a look at n sections."""
 
     q: FloatArray
     nodes: FloatArray
     bends: FloatArray
     fine: FloatArray
     arm_speeds: FloatArray
-    gaps: FloatArray
-    speeds: FloatArray
-    holds: FloatArray
+    nearest: npt.NDArray[np.int64]
     looks_left: npt.NDArray[np.int64]
 
 
 @kernel
-def make_work(n, m):
-    """Work space for n sections and m obstacles."""
+def make_work(n):
+    """Work space for n sections."""
     return Work(
         np.empty(2 * n),
         np.empty((n * (CHORDS + 1), 9)),
         np.empty(n),
         np.empty((SUB_CHORDS + 1, 9)),
-        np.empty(n * CHORDS),
-        np.empty((m, n * CHORDS)),
-        np.empty(m),
-        np.empty(m),
+        np.zeros(n * CHORDS),
+        np.zeros(1, dtype=np.int64),
         np.full(1, MAX_LOOKS, dtype=np.int64),
     )
 
 
 @kernel
-def _roll(start, bend, length, chords, nodes, first):
-    """Walk along an arc in equal chords from ``start`` and write chords + 1 rows of ``nodes`` from row ``first`` on.
+def _roll(nodes, first, bend, length, chords):
+    """Walk along an arc in equal chords from row ``first`` of ``nodes``, and write the ``chords`` rows after it.
 
     A row is point 0:3, tangent 3:6 and the direction of bending 6:9. Each chord leaves its node at half its own bend.
     """
@@ -65,36 +61,46 @@ def _roll(start, bend, length, chords, nodes, first):
     sin, cos = math.sin(half), math.cos(half)
     chord = length / chords * (sin / half if half > 1e-9 else 1.0)
     turn_sin, turn_cos = 2.0 * sin * cos, 1.0 - 2.0 * sin * sin
-    for k in range(9):
-        nodes[first, k] = start[k]
-    for i in range(first, first + chords):
-        for k in range(3):
-            z, d = nodes[i, 3 + k], nodes[i, 6 + k]
-            nodes[i + 1, k] = nodes[i, k] + chord * (cos * z + sin * d)
-            nodes[i + 1, 3 + k] = turn_cos * z + turn_sin * d
-            nodes[i + 1, 6 + k] = turn_cos * d - turn_sin * z
+    px, py, pz = nodes[first, 0], nodes[first, 1], nodes[first, 2]
+    zx, zy, zz = nodes[first, 3], nodes[first, 4], nodes[first, 5]
+    dx, dy, dz = nodes[first, 6], nodes[first, 7], nodes[first, 8]
+    for i in range(first + 1, first + chords + 1):
+        px += chord * (cos * zx + sin * dx)
+        py += chord * (cos * zy + sin * dy)
+        pz += chord * (cos * zz + sin * dz)
+        zx, dx = turn_cos * zx + turn_sin * dx, turn_cos * dx - turn_sin * zx
+        zy, dy = turn_cos * zy + turn_sin * dy, turn_cos * dy - turn_sin * zy
+        zz, dz = turn_cos * zz + turn_sin * dz, turn_cos * dz - turn_sin * zz
+        nodes[i, 0], nodes[i, 1], nodes[i, 2] = px, py, pz
+        nodes[i, 3], nodes[i, 4], nodes[i, 5] = zx, zy, zz
+        nodes[i, 6], nodes[i, 7], nodes[i, 8] = dx, dy, dz
 
 
 @kernel
 def lay_out(q, section_length, chords, nodes, bends):
     """Walk the whole backbone, ``chords`` to a section: rows of ``nodes`` (n * (chords + 1), 9), ``bends`` (n,)."""
-    start = np.zeros(9)
-    x, y = np.zeros(3), np.zeros(3)
-    x[0], y[1], start[5] = 1.0, 1.0, 1.0
+    across = np.empty(3)  # unit vector across the plane of bending: a section turns about it
+    c_before, s_before = 1.0, 0.0
     for i in range(bends.shape[0]):
         u, v = q[2 * i], q[2 * i + 1]
         bend = math.sqrt(u * u + v * v)
         c, s = (u / bend, v / bend) if bend > 0.0 else (1.0, 0.0)
-        for k in range(3):
-            start[6 + k] = c * x[k] + s * y[k]
         first = i * (chords + 1)
-        _roll(start, bend, section_length, chords, nodes, first)
-        bends[i] = bend
-        for k in range(3):
-            across = c * y[k] - s * x[k]
-            start[k], start[3 + k] = nodes[first + chords, k], nodes[first + chords, 3 + k]
-            x[k] = c * nodes[first + chords, 6 + k] - s * across
-            y[k] = s * nodes[first + chords, 6 + k] + c * across
+        row = nodes[first]
+        if i == 0:
+            row[:] = 0.0
+            row[5], row[6], row[7] = 1.0, c, s
+            across[0], across[1], across[2] = -s, c, 0.0
+        else:
+            # From the plane of the section before, by the angle between the two about the tangent.
+            end = nodes[first - 1]
+            along, aside = c * c_before + s * s_before, s * c_before - c * s_before
+            for k in range(3):
+                row[k], row[3 + k] = end[k], end[3 + k]
+                row[6 + k] = along * end[6 + k] + aside * across[k]
+                across[k] = along * across[k] - aside * end[6 + k]
+        _roll(nodes, first, bend, section_length, chords)
+        bends[i], c_before, s_before = bend, c, s
 
 
 @kernel
@@ -119,7 +125,8 @@ def _to_chord(a, b, x, y, z):
 @kernel
 def _to_arc(start, bend, length, x, y, z, fine):
     """Distance from (x, y, z) to an arc by sub-chords, less their pad; ``fine`` (SUB_CHORDS + 1, 9) is work space."""
-    _roll(start, bend, length, SUB_CHORDS, fine, 0)
+    fine[0] = start
+    _roll(fine, 0, bend, length, SUB_CHORDS)
     nearest = math.inf
     for k in range(SUB_CHORDS):
         nearest = min(nearest, _to_chord(fine[k], fine[k + 1], x, y, z))
@@ -168,27 +175,42 @@ def obstacle_at(j, t, truth):
 
 
 @kernel
-def _look(q, t, section_length, arm_radius, truth, work):
-    """Clearance at an instant; also each chord's from each obstacle, into ``work.gaps``, and the obstacles' speeds."""
+def _look(q, t, soonest, smallest_before, section_length, arm_radius, truth, work):
+    """Clearance at an instant, and a time within which no clearance falls to KEPT_SHARE of the smallest seen.
+
+    That time is at most ``soonest``: inf for all there is, 0 to spare the work where only the clearance is wanted.
+    """
     lay_out(q, section_length, CHORDS, work.nodes, work.bends)
     work.looks_left[0] -= 1
-    nodes = work.nodes
-    length = section_length / CHORDS
+    sections, obstacles = work.bends.shape[0], truth.radii_m.shape[0]
     smallest = math.inf
-    for j in range(truth.radii_m.shape[0]):
-        x, y, z, work.speeds[j], work.holds[j] = obstacle_at(j, t, truth)
+    # What was nearest at the last look comes first: next to it the rest hardly ever matters, and a bound suffices.
+    for turn in range(obstacles):
+        j = (work.nearest[0] + turn) % obstacles
+        x, y, z, speed, holds = obstacle_at(j, t, truth)
         reach = arm_radius + truth.radii_m[j]
-        for i in range(work.bends.shape[0]):
-            bend = work.bends[i] / CHORDS
+        for i in range(sections):
+            middle = work.nodes[i * (CHORDS + 1) + CHORDS // 2]
+            apart = math.sqrt((middle[0] - x) ** 2 + (middle[1] - y) ** 2 + (middle[2] - z) ** 2)
+            bound = apart - 0.5 * section_length - reach
+            fastest = work.arm_speeds[(i + 1) * CHORDS - 1] + truth.speeds_m_s[j]
+            if bound >= smallest and bound - KEPT_SHARE * min(smallest, smallest_before) >= soonest * fastest:
+                continue
+            bend, length = work.bends[i] / CHORDS, section_length / CHORDS
             pad = length * bend / 8.0
             for k in range(CHORDS):
                 node = i * (CHORDS + 1) + k
-                gap = _to_chord(nodes[node], nodes[node + 1], x, y, z) - reach - pad
+                gap = _to_chord(work.nodes[node], work.nodes[node + 1], x, y, z) - reach - pad
                 if gap < REFINE_RATIO * pad:
-                    gap = _to_arc(nodes[node], bend, length, x, y, z, work.fine) - reach
-                work.gaps[j, i * CHORDS + k] = gap
-                smallest = min(smallest, gap)
-    return smallest
+                    gap = _to_arc(work.nodes[node], bend, length, x, y, z, work.fine) - reach
+                if gap < smallest:
+                    smallest = gap
+                    work.nearest[0] = j
+                spare, arm_speed = gap - KEPT_SHARE * min(smallest, smallest_before), work.arm_speeds[i * CHORDS + k]
+                # At the obstacle's largest speed for as long as it takes, or at its present one while that holds.
+                by_present = min(spare / (arm_speed + speed), holds)
+                soonest = min(soonest, max(spare / (arm_speed + truth.speeds_m_s[j]), by_present))
+    return smallest, soonest
 
 
 @kernel
@@ -205,19 +227,6 @@ def speed_bounds(q0, q1, duration, section_length, chords, out):
 
 
 @kernel
-def _time_to_contact(work, truth, kept):
-    """A time [s] within which no clearance can fall to ``kept``, from the gaps and speeds of the last look."""
-    soonest = math.inf
-    for j in range(truth.radii_m.shape[0]):
-        for k in range(work.arm_speeds.shape[0]):
-            gap, arm_speed = work.gaps[j, k] - kept, work.arm_speeds[k]
-            # At the obstacle's largest speed for as long as it takes, or at its present one for as long as that holds.
-            by_present = min(gap / (arm_speed + work.speeds[j]), work.holds[j])
-            soonest = min(soonest, max(gap / (arm_speed + truth.speeds_m_s[j]), by_present))
-    return soonest
-
-
-@kernel
 def interpolate(q0, q1, share, q):
     """Write the configuration at ``share`` of the way from ``q0`` to ``q1`` into ``q``."""
     for c in range(q.shape[0]):
@@ -231,9 +240,9 @@ def look_at(times, configurations, t, section_length, arm_radius, truth):
     after = min(k + 1, times.shape[0] - 1)
     span = times[after] - times[k]
     share = min(1.0, max(0.0, (t - times[k]) / span)) if span > 0.0 else 0.0
-    work = make_work(configurations.shape[1] // 2, truth.radii_m.shape[0])
+    work = make_work(configurations.shape[1] // 2)
     interpolate(configurations[k], configurations[after], share, work.q)
-    return _look(work.q, t, section_length, arm_radius, truth, work)
+    return _look(work.q, t, 0.0, math.inf, section_length, arm_radius, truth, work)[0]
 
 
 @kernel
@@ -247,13 +256,13 @@ def _advance(q0, q1, t0, duration, start, stop, smallest, section_length, arm_ra
     while True:
         t = t0 + share * duration
         interpolate(q0, q1, share, work.q)
-        gap = _look(work.q, t, section_length, arm_radius, truth, work)
+        gap, safe = _look(work.q, t, math.inf, smallest, section_length, arm_radius, truth, work)
         smallest = min(smallest, gap)
         if math.isnan(at_start):
             at_start = gap
         if gap < CONTACT_M:
             return t, at_start, smallest
-        ahead = share + _time_to_contact(work, truth, KEPT_SHARE * smallest) / duration
+        ahead = share + safe / duration
         if ahead == share or work.looks_left[0] < 0:
             return t, at_start, smallest  # not even a tick of the clock is proven
         share = ahead
@@ -268,7 +277,7 @@ def contacts(times, configurations, end, section_length, arm_radius, truth):
     Returns the time of the first contact at a whole second, of the first at any instant (nan: none), and the smallest
     clearance seen. Once there is a contact, only whole seconds are still looked at; a contact at one of them ends it.
     """
-    work = make_work(configurations.shape[1] // 2, truth.radii_m.shape[0])
+    work = make_work(configurations.shape[1] // 2)
     work.looks_left[0] += times.shape[0]
     swept, smallest = math.nan, math.inf
     for k in range(times.shape[0] - 1):
@@ -289,7 +298,7 @@ def contacts(times, configurations, end, section_length, arm_radius, truth):
                 )
             elif whole:
                 interpolate(q0, q1, (start - times[k]) / duration, work.q)
-                gap = _look(work.q, start, section_length, arm_radius, truth, work)
+                gap = _look(work.q, start, 0.0, smallest, section_length, arm_radius, truth, work)[0]
                 smallest = min(smallest, gap)
             if whole and gap <= 0.0:
                 return start, swept, smallest

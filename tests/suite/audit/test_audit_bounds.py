@@ -55,7 +55,7 @@ def tip_speeds(arm, times, states, instants):
     return np.linalg.norm(tips[1] - tips[0], axis=1) / (2 * h)
 
 
-@settings(max_examples=300)
+@settings(max_examples=100)
 @given(seed=st.integers(0, 2**32 - 1), share_of_limit=st.floats(0.9, 1.1), duration_s=st.floats(0.05, 20.0))
 def test_tip_speed_is_certified_and_excess_is_excess(seed, share_of_limit, duration_s):
     rng = np.random.default_rng(seed)
@@ -63,7 +63,7 @@ def test_tip_speed_is_certified_and_excess_is_excess(seed, share_of_limit, durat
     times = np.array([0.0, duration_s])
     start = random_bending(rng, 3, 2.0)
     states = np.stack([start, start + min(0.15 * duration_s, 1.0) * random_bending(rng, 3, 1.0)])
-    inside = np.linspace(1e-6, duration_s - 1e-6, 2000)
+    inside = np.linspace(1e-6, duration_s - 1e-6, 500)
     fastest = tip_speeds(arm, times, states, inside).max()
     limit = fastest / share_of_limit
     arm = arm.model_copy(update={"max_tip_speed_m_s": limit})
@@ -71,7 +71,7 @@ def test_tip_speed_is_certified_and_excess_is_excess(seed, share_of_limit, durat
     verdict = audit(scenario, times, states).executable
     if share_of_limit > 1.0 + 2.0 * LIMIT_SLACK + 1e-5:
         assert verdict.violation_kind == Kind.TIP_SPEED
-    if share_of_limit < 1.0 + LIMIT_SLACK - 1e-3:  # the 2000 instants may miss the fastest
+    if share_of_limit < 1.0 + LIMIT_SLACK - 1e-3:  # the 500 instants may miss the fastest
         assert verdict.violation_kind != Kind.TIP_SPEED
     if verdict.violation_kind == Kind.TIP_SPEED:
         at = np.clip(verdict.violation_time_s, inside[0], inside[-1])
