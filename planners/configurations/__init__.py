@@ -45,8 +45,9 @@ class EnumeratedSpace(NamedTuple):
     """Configuration codes (base-B digits, first section first), shape (B^n,)."""
 
     def cube_of(self, point_m: FloatArray) -> int:
-        """Number of the cube that holds a point (3,) [m]."""
-        x, y, z = (float(c) for c in point_m)
+        """Number of the cube that holds a point (3,) [m], or of the nearest one when the point is off the grid."""
+        edge_m = (self.half - 0.5) * self.cube_m
+        x, y, z = (min(max(float(c), -edge_m), edge_m) for c in point_m)
         return int(_kernels.cube_of(x, y, z, self.cube_m, self.half))
 
     def center_m(self, cube: int) -> FloatArray:
