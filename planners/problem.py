@@ -18,7 +18,11 @@ from planners.goals import GoalConfigurations
 from planners.prediction import Prediction
 from scenarios.arm import ContinuumArm, FloatArray
 from scenarios.collision import CONTACT_TOLERANCE_M
-from scenarios.world import SampledWorld
+from scenarios.shaped_world import ShapedWorld
+from scenarios.world import SampledWorld, make_world
+
+_NOTHING = make_world(0.0, 1.0, np.empty((2, 0, 3)), np.empty(0))
+"""A world without obstacles."""
 
 
 class TimedPath(NamedTuple):
@@ -40,9 +44,12 @@ class Query(NamedTuple):
     prediction: Prediction
     """The obstacles as predicted, with error bounds."""
     world: SampledWorld
-    """The same for collision checks, grown by the margin that the planner's registry entry asks for."""
+    """The same for collision checks, grown by the margin that the planner's registry entry asks for: spheres that hold
+    the obstacles, whatever their shapes are."""
     limits: bool
     """Whether planners whose paths may otherwise jump in shape must keep to what the motion validator allows."""
+    shapes: ShapedWorld | None = None
+    """The obstacles' own shapes, which decide where the spheres are hit; None where ``world`` is exact."""
 
     def goal_distance(self, q: FloatArray) -> float:
         """Distance of the tip at ``q`` (dof,) [rad] from the goal point [m]."""
@@ -75,13 +82,15 @@ class SpaceTimeChecker(ob.StateValidityChecker):
         return self.clearance(state) > 0.0
 
     def clearance(self, state: ob.State) -> float:
-        """Signed distance to the nearest predicted obstacle [m]; -inf past the bending limit."""
+        """Signed distance to the nearest predicted obstacle [m], never overstated; -inf past the bending limit."""
         self.checks += 1
         arm, world = self.query.arm, self.query.world
         q, time_s = read_state(state, arm.dof)
         if not bool(arm.within_bends(q)):
             return -math.inf
-        return float(_kernels.clearance(q, time_s, arm.section_length_m, arm.radius_m, world))
+        gap = float(_kernels.clearance(q, time_s, arm.section_length_m, arm.radius_m, world))
+        shapes = self.query.shapes
+        return gap if shapes is None or gap > 0.0 else shapes.clearance(arm, q, time_s)
 
 
 class SpaceTimeMotionValidator(ob.MotionValidator):
@@ -99,16 +108,29 @@ class SpaceTimeMotionValidator(ob.MotionValidator):
         return self.check(*read_state(start, dof), *read_state(end, dof))
 
     def check(self, q0: FloatArray, t0_s: float, q1: FloatArray, t1_s: float) -> bool:
-        """The same on arrays (dof,) [rad] and times [s]; one compiled call."""
-        return bool(self.check_all(q0[None], t0_s, q1[None], t1_s)[0, 0])
+        """The same on arrays (dof,) [rad] and times [s]; one compiled call, unless shapes have to decide."""
+        if self.check_all(q0[None], t0_s, q1[None], t1_s)[0, 0]:
+            return True
+        query = self.query
+        if query.shapes is None or not self._motions_valid(q0[None], t0_s, q1[None], t1_s, _NOTHING)[0, 0]:
+            return False
+        return query.shapes.is_motion_valid(query.arm, q0, t0_s, q1, t1_s)
 
     def check_all(self, before: FloatArray, t0_s: float, after: FloatArray, t1_s: float) -> npt.NDArray[np.bool_]:
-        """The same from each of ``before`` (A, dof) to each of ``after`` (B, dof), in one compiled call: (A, B)."""
+        """The same from each of ``before`` (A, dof) to each of ``after`` (B, dof), in one compiled call: (A, B).
+
+        So many motions are checked against spheres that hold the obstacles, whatever their shapes are.
+        """
         self.checks += len(before) * len(after)
+        return self._motions_valid(before, t0_s, after, t1_s, self.query.world)
+
+    def _motions_valid(
+        self, before: FloatArray, t0_s: float, after: FloatArray, t1_s: float, world: SampledWorld
+    ) -> npt.NDArray[np.bool_]:
         arm = self.query.arm
         valid: npt.NDArray[np.bool_] = _kernels.motions_valid(
             before, t0_s, after, t1_s, arm.section_length_m, arm.radius_m, arm.max_bend_rad,
-            arm.max_bend_rate_rad_s, arm.max_tip_speed_m_s, CONTACT_TOLERANCE_M, self.query.world,
+            arm.max_bend_rate_rad_s, arm.max_tip_speed_m_s, CONTACT_TOLERANCE_M, world,
         )  # fmt: skip
         return valid
 

@@ -15,7 +15,10 @@ from planners.prediction import Observation, Prediction, build_predictor
 from planners.problem import Query, SpaceTimeProblem, read_state
 from planners.registry import PLANNERS, PlannerSpec
 from scenarios.arm import ContinuumArm, FloatArray
+from scenarios.obstacle import Obstacle
 from scenarios.scenario import Scenario
+from scenarios.shaped_world import shaped_world
+from scenarios.world import cover_world
 
 GOALS = 64
 """Goal configurations looked for per trial."""
@@ -98,11 +101,23 @@ class Session:
 
     def _look(self, observation: Observation, now_s: float) -> None:
         prediction = self._predictor.predict(observation, self._horizon_s, self._step_s)
-        self._problem.update(self._query(prediction), now_s)
+        self._problem.update(self._query(prediction, self._scenario.obstacles), now_s)
 
-    def _query(self, prediction: Prediction) -> Query:
+    def _query(self, prediction: Prediction, obstacles: Sequence[Obstacle] = ()) -> Query:
+        """What the next solve is about; ``obstacles`` are asked for their shapes, never for their motion."""
         scenario, world = self._scenario, prediction.world(self._margin, self._largest_bound_m)
-        return Query(scenario.arm, scenario.goal, scenario.goal_tolerance_m, prediction, world, self._limits)
+        margins = world.radii_m - prediction.radii_m
+        placed = (obstacles, prediction.start_s, prediction.step_s, prediction.centers_m, margins)
+        shapes = shaped_world(*placed)
+        return Query(
+            scenario.arm,
+            scenario.goal,
+            scenario.goal_tolerance_m,
+            prediction,
+            world if shapes is None else cover_world(*placed),
+            self._limits,
+            shapes,
+        )
 
     def _checks(self) -> tuple[int, int]:
         states, motions = self._problem.checker.checks, self._problem.validator.checks
@@ -142,7 +157,6 @@ def warm_up(specs: Sequence[PlannerSpec], arm: ContinuumArm) -> None:
     Must run once before worker processes start: they then load both from the cache.
     """
     from scenarios.motion import Orbit
-    from scenarios.obstacle import Obstacle
 
     motion = Orbit(center_m=(0.0, 0.0, 1.0), radius_m=0.1, normal=(0.0, 0.0, 1.0), rate_rad_s=0.1, phase_rad=0.0)
     start = np.full(arm.dof, 0.1)

@@ -8,19 +8,27 @@ from scenarios.files import load_scenarios, save_scenarios
 from scenarios.motion import Line, Orbit, Track, Wander, Wave
 from scenarios.obstacle import Obstacle
 from scenarios.scenario import STEP_S, Scenario
+from scenarios.shaped_world import ShapedWorld, shaped_world
+from scenarios.shapes import Box, Capsule, Cylinder, Mesh, Shape
 from scenarios.spec import SpecError
-from scenarios.world import SampledWorld, make_world, sample_world
+from scenarios.world import SampledWorld, cover_world, make_world, sample_world
 
 __all__ = [
     "FAMILIES",
     "STEP_S",
+    "Box",
+    "Capsule",
     "ContinuumArm",
+    "Cylinder",
     "Line",
+    "Mesh",
     "Obstacle",
     "Orbit",
     "SampledWorld",
     "Scenario",
     "ScenarioError",
+    "Shape",
+    "ShapedWorld",
     "SpecError",
     "Track",
     "Wander",
@@ -28,6 +36,7 @@ __all__ = [
     "are_states_valid",
     "clearance",
     "clearances",
+    "cover_world",
     "generate",
     "is_motion_valid",
     "is_state_valid",
@@ -35,5 +44,6 @@ __all__ = [
     "make_world",
     "sample_world",
     "save_scenarios",
+    "shaped_world",
     "start_is_free",
 ]

@@ -1,9 +1,10 @@
-"""Obstacles as the kernels see them: sampled in time, of true or of predicted motion alike."""
+"""Obstacles as the kernels see them: spheres, sampled in time, of true or of predicted motion alike."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from scenarios.motion import FloatArray
 from scenarios.obstacle import Obstacle
@@ -39,14 +40,46 @@ def make_world(start_s: float, step_s: float, centers_m: FloatArray, radii_m: Fl
     return SampledWorld(float(start_s), float(step_s), centers, radii, speed)
 
 
-def sample_world(obstacles: Sequence[Obstacle], start_s: float, end_s: float, step_s: float) -> SampledWorld:
-    """Sample the true motion of ``obstacles`` over [start_s, end_s], every ``step_s``."""
+def cover_world(
+    obstacles: Sequence[Obstacle], start_s: float, step_s: float, centers_m: FloatArray, margins_m: npt.ArrayLike = 0.0
+) -> SampledWorld:
+    """Spheres that hold every obstacle, each grown by its margin; exact where all obstacles are spheres.
+
+    Args:
+        obstacles: What they look like; their motion is not looked at.
+        start_s: Time of the first sample [s].
+        step_s: Time between samples [s].
+        centers_m: Where they are, shape (T, m, 3), [m].
+        margins_m: By how much they are to be grown, broadcast to (T, m), [m].
+    """
+    margins = np.broadcast_to(np.asarray(margins_m, dtype=np.float64), centers_m.shape[:2])
+    covers = [obstacle.cover for obstacle in obstacles]
+    if not covers:
+        return make_world(start_s, step_s, centers_m, np.empty(0))
+    owners = np.repeat(np.arange(len(covers)), [len(cover.radii_m) for cover in covers])
+    offsets = np.concatenate([cover.centers_m for cover in covers])
+    radii = np.concatenate([cover.radii_m for cover in covers])
+    return make_world(start_s, step_s, centers_m[:, owners] + offsets, radii + margins[:, owners])
+
+
+def sample_times(start_s: float, end_s: float, step_s: float) -> FloatArray:
+    """Two or more times from ``start_s`` on, every ``step_s``, the last at or after ``end_s``: (T,) [s]."""
     count = max(2, int(np.ceil((end_s - start_s) / step_s - 1e-9)) + 1)
-    times = start_s + step_s * np.arange(count, dtype=np.float64)
-    centers = np.empty((count, len(obstacles), 3))
+    return start_s + step_s * np.arange(count, dtype=np.float64)
+
+
+def positions(obstacles: Sequence[Obstacle], times_s: FloatArray) -> FloatArray:
+    """True centres (T, m, 3) [m] at times (T,) [s]."""
+    centers = np.empty((len(times_s), len(obstacles), 3))
     for j, obstacle in enumerate(obstacles):
-        centers[:, j] = obstacle.position(times)
-    return make_world(start_s, step_s, centers, np.array([o.radius_m for o in obstacles]))
+        centers[:, j] = obstacle.position(times_s)
+    return centers
+
+
+def sample_world(obstacles: Sequence[Obstacle], start_s: float, end_s: float, step_s: float) -> SampledWorld:
+    """Sample the true motion of spheres that hold ``obstacles`` over [start_s, end_s], every ``step_s``."""
+    centers = positions(obstacles, sample_times(start_s, end_s, step_s))
+    return cover_world(obstacles, start_s, step_s, centers)
 
 
 def obstacles_at(world: SampledWorld, time_s: float) -> tuple[FloatArray, FloatArray]:

@@ -15,8 +15,9 @@ from scenarios.families.crossing import CrossingFamily
 from scenarios.families.orbit import OrbitFamily
 from scenarios.families.wander import WanderFamily
 from scenarios.scenario import Scenario
+from scenarios.shaped_world import shaped_world
 from scenarios.spec import known_name, parse_settings, parse_spec
-from scenarios.world import sample_world
+from scenarios.world import positions, sample_times, sample_world
 
 FAMILIES: dict[str, type[Family]] = {"orbit": OrbitFamily, "crossing": CrossingFamily, "wander": WanderFamily}
 
@@ -83,6 +84,10 @@ def _draw(name: str, settings: Family, n_obstacles: int, k: int, seed: int, arm:
 
 def start_is_free(scenario: Scenario) -> bool:
     """Whether nothing touches the arm at its start at any instant of the observation, [-observation_s, 0]."""
-    world = sample_world(scenario.obstacles, -scenario.observation_s, 0.0, 0.05)
-    q = scenario.start
-    return is_motion_valid(scenario.arm, q, -scenario.observation_s, q, 0.0, world)
+    arm, q, start_s, step_s = scenario.arm, scenario.start, -scenario.observation_s, 0.05
+    world = sample_world(scenario.obstacles, start_s, 0.0, step_s)
+    if is_motion_valid(arm, q, start_s, q, 0.0, world):
+        return True
+    centers = positions(scenario.obstacles, sample_times(start_s, 0.0, step_s))
+    exact = shaped_world(scenario.obstacles, start_s, step_s, centers)
+    return exact is not None and exact.is_motion_valid(arm, q, start_s, q, 0.0)
