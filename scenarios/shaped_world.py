@@ -29,7 +29,10 @@ class ShapedWorld:
     def __init__(self, spheres: SampledWorld, others: SampledWorld, shapes: Sequence[Shape]) -> None:
         """Place ``shapes`` at the centres of ``others``, whose radii are the margins by which the shapes are grown."""
         self._spheres, self._others, self._shapes = spheres, others, shapes
-        self._covers = [shape.cover() for shape in shapes]
+        covers = [shape.cover() for shape in shapes]
+        counts = [len(cover.radii_m) for cover in covers]
+        self._owners, self._firsts = np.repeat(np.arange(len(covers)), counts), np.cumsum([0, *counts[:-1]])
+        self._cover = Cover(*(np.concatenate(parts) for parts in zip(*covers, strict=True)))
         # Shapes stay at the origin and chords come to them.
         self._objects = [fcl.CollisionObject(shape.geometry(), fcl.Transform(shape.rotation)) for shape in shapes]
 
@@ -78,9 +81,8 @@ class ShapedWorld:
         bow = arm.section_length_m * np.hypot(q[0::2], q[1::2]) / (8.0 * _CHORDS**2)  # at most: docs/audit.md
         thickness = arm.radius_m + np.repeat(bow, _CHORDS)
         centers, margins = obstacles_at(self._others, time_s)
-        proven = np.empty((len(middles), len(self._shapes)))
-        for j, cover in enumerate(self._covers):
-            proven[:, j] = _gaps_to_spheres(points, centers[j], cover) - thickness - margins[j]
+        to_cover = _to_chords(points, centers[self._owners] + self._cover.centers_m) - self._cover.radii_m
+        proven = np.minimum.reduceat(to_cover, self._firsts, axis=1) - thickness[:, None] - margins
         looked_into = np.zeros(proven.shape, dtype=np.bool_)
         per_part = len(middles) // parts
         gaps = np.empty(parts)
@@ -130,13 +132,13 @@ def shaped_world(
     return ShapedWorld(spheres, others, shapes)
 
 
-def _gaps_to_spheres(points: FloatArray, center: FloatArray, cover: Cover) -> FloatArray:
-    """Distance (C,) [m] from each chord between ``points`` (C + 1, 3) to the nearest sphere of a cover."""
+def _to_chords(points: FloatArray, others: FloatArray) -> FloatArray:
+    """Distance (C, K) [m] from each chord between ``points`` (C + 1, 3) to each of ``others`` (K, 3)."""
     along = np.diff(points, axis=0)
-    to = center + cover.centers_m - points[:-1, None]
-    shares = np.einsum("ckx,cx->ck", to, along) / np.square(along).sum(axis=1)[:, None]
-    away = np.linalg.norm(to - np.clip(shares, 0.0, 1.0)[:, :, None] * along[:, None], axis=2)
-    return np.asarray((away - cover.radii_m).min(axis=1))
+    to = others - points[:-1, None]
+    shares = np.einsum("ckx,cx->ck", to, along) / np.einsum("cx,cx->c", along, along)[:, None]
+    to -= np.clip(shares, 0.0, 1.0)[:, :, None] * along[:, None]
+    return np.asarray(np.sqrt(np.einsum("ckx,ckx->ck", to, to)))
 
 
 def _turns_z_to(directions: FloatArray) -> FloatArray:
