@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from scenarios.kernels.jit import kernel
+from suite.audit.shapes._kernels import SPHERE, arc_gap
 
 CHORDS = 8  # per section
 SUB_CHORDS = 16  # per chord, where a distance is too small for the pad
@@ -200,9 +201,14 @@ def _look(q, t, soonest, smallest_before, section_length, arm_radius, truth, wor
             pad = length * bend / 8.0
             for k in range(CHORDS):
                 node = i * (CHORDS + 1) + k
-                gap = _to_chord(work.nodes[node], work.nodes[node + 1], x, y, z) - reach - pad
-                if gap < REFINE_RATIO * pad:
-                    gap = _to_arc(work.nodes[node], bend, length, x, y, z, work.fine) - reach
+                if truth.bodies.kinds[j] == SPHERE:
+                    gap = _to_chord(work.nodes[node], work.nodes[node + 1], x, y, z) - reach - pad
+                    if gap < REFINE_RATIO * pad:
+                        gap = _to_arc(work.nodes[node], bend, length, x, y, z, work.fine) - reach
+                else:
+                    gap = arc_gap(
+                        work.nodes[node], bend, length, arm_radius + truth.pads_m[j], truth.bodies, j, x, y, z
+                    )
                 if gap < smallest:
                     smallest = gap
                     work.nearest[0] = j

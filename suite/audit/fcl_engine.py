@@ -55,7 +55,7 @@ class _Bodies:
         # All as long as their arcs, and so longer than their chords, by a few micrometres.
         capsule = fcl.Capsule(self._arm.radius_m, self._arm.section_length_m / _CAPSULES)
         self._capsules = [fcl.CollisionObject(capsule) for _ in range(self._arm.n_sections * _CAPSULES)]
-        self._shapes = [fcl.CollisionObject(_shape(obstacle)) for obstacle in scenario.obstacles]
+        self._shapes = [_object(obstacle) for obstacle in scenario.obstacles]
         self._managers = _manager(self._capsules), _manager(self._shapes)
 
     def clearance(self, q: FloatArray, centers: list[FloatArray]) -> float:
@@ -70,7 +70,7 @@ class _Bodies:
         for capsule, turn, middle in zip(self._capsules, turns, middles, strict=True):
             capsule.setTransform(fcl.Transform(turn, middle))
         for shape, center in zip(self._shapes, centers, strict=True):
-            shape.setTransform(fcl.Transform(center))
+            shape.setTranslation(center)
         for manager in self._managers:
             manager.update()
         data = fcl.DistanceData(request=fcl.DistanceRequest(enable_signed_distance=True))
@@ -94,5 +94,7 @@ def _turns_z_to(directions: FloatArray) -> FloatArray:
     return np.stack([x, np.cross(z, x), z], axis=2)
 
 
-def _shape(obstacle: Obstacle) -> fcl.CollisionGeometry:
-    return fcl.Sphere(obstacle.radius_m)
+def _object(obstacle: Obstacle) -> fcl.CollisionObject:
+    if obstacle.shape is None:
+        return fcl.CollisionObject(fcl.Sphere(obstacle.radius_m))
+    return fcl.CollisionObject(obstacle.shape.geometry(), fcl.Transform(obstacle.shape.rotation))

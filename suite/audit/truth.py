@@ -7,8 +7,9 @@ from typing import NamedTuple, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from scenarios import Line, Orbit, Scenario, Track, Wander
+from scenarios import Line, Obstacle, Orbit, Scenario, Track, Wander
 from suite.audit._kernels import SMOOTH, TRACK
+from suite.audit.shapes import Bodies, pack_shapes
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -29,10 +30,14 @@ class Law(Protocol):
 
 
 class Truth(NamedTuple):
-    """m spheres on their laws: smooth ones are a course plus a span of ``waves``, tracks a span of ``points``."""
+    """m obstacles on their laws: smooth ones are a course plus a span of ``waves``, tracks a span of ``points``."""
 
+    bodies: Bodies
+    """What they look like."""
     radii_m: FloatArray
-    """Radii, shape (m,), [m]."""
+    """Radii of spheres about their centres that hold them, pads included, shape (m,), [m]."""
+    pads_m: FloatArray
+    """How far a centre may be from where its law is packed to be, shape (m,), [m]."""
     speeds_m_s: FloatArray
     """Speeds that are never exceeded, shape (m,)."""
     laws: npt.NDArray[np.int64]
@@ -63,13 +68,13 @@ _NO_COURSE = np.zeros(6)
 
 def pack(scenario: Scenario) -> Truth:
     """Pack the obstacles of ``scenario``, exact at every instant; a law without a kernel is resampled with a pad."""
-    radii = [obstacle.radius_m for obstacle in scenario.obstacles]
     packed = [pack_law(obstacle.motion, scenario.time_limit_s) for obstacle in scenario.obstacles]
-    return assemble(radii, packed)
+    return assemble(scenario.obstacles, packed)
 
 
-def assemble(radii_m: Sequence[float], packed: Sequence[_Packed]) -> Truth:
-    """Put packed obstacles behind one another."""
+def assemble(obstacles: Sequence[Obstacle], packed: Sequence[_Packed]) -> Truth:
+    """Put obstacles, with their laws packed, behind one another."""
+    pads = np.array([one.pad_m for one in packed], dtype=np.float64)
     waves, points, spans = [np.empty((0, 7))], [np.empty((0, 4))], []
     for one in packed:
         rows = waves if one.law == SMOOTH else points
@@ -77,7 +82,9 @@ def assemble(radii_m: Sequence[float], packed: Sequence[_Packed]) -> Truth:
         rows.append(one.rows)
         spans.append((first, first + len(one.rows)))
     return Truth(
-        radii_m=np.array([radius + one.pad_m for radius, one in zip(radii_m, packed, strict=True)]),
+        bodies=pack_shapes(obstacles),
+        radii_m=np.array([obstacle.radius_m for obstacle in obstacles], dtype=np.float64) + pads,
+        pads_m=pads,
         speeds_m_s=np.array([one.speed_m_s for one in packed], dtype=np.float64),
         laws=np.array([one.law for one in packed], dtype=np.int64),
         courses=np.array([one.course for one in packed]).reshape(-1, 6),

@@ -68,7 +68,8 @@ class Swing:
 
 def test_a_law_without_a_kernel_is_followed_within_its_pad():
     packed = pack_law(Swing(), 60.0)
-    truth = assemble([0.02], [packed])
+    sphere = Obstacle(radius_m=0.02, motion=Line(point_m=(0, 0, 0), velocity_m_s=(0, 0, 0)))
+    truth = assemble([sphere], [packed])
     assert 0.0 < packed.pad_m <= 2.1e-5
     assert truth.radii_m[0] == 0.02 + packed.pad_m
     for t in np.random.default_rng(3).uniform(0.0, 60.0, 300):
