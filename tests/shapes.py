@@ -1,7 +1,5 @@
 """Random convex shapes, and obstacles that carry them."""
 
-import numpy as np
-
 from scenarios import Box, Capsule, Cylinder, Line, Mesh, Obstacle
 
 KINDS = ("box", "capsule", "cylinder", "mesh")

@@ -56,7 +56,11 @@ def test_signed_distances_agree_with_the_twin(seed, kind):
 @given(seed=st.integers(0, 2**32 - 1), kind=st.sampled_from(KINDS))
 def test_clearance_never_overstates_and_agrees_with_fcl_and_dense_points(seed, kind):
     rng = np.random.default_rng(seed)
-    shape, center, q = random_shape(rng, kind), rng.uniform(-0.25, 0.25, 3) + (0, 0, 0.15), random_bending(rng, 3)
+    shape, center, q = (
+        random_shape(rng, kind),
+        rng.uniform([-0.25, -0.25, -0.1], [0.25, 0.25, 0.4]),
+        random_bending(rng, 3),
+    )
     found = clearance(scenario(moving(shape, center)), q, 0.0)
     dense = shaped_clearance(q, ARM.section_length_m, ARM.radius_m, [shape], [center], 300)
     spacing = ARM.section_length_m / 300
