@@ -86,7 +86,7 @@ class Session:
         elapsed = time.perf_counter() - started
         states, motions = (after - b for after, b in zip(self._checks(), before, strict=True))
         times, path = self._path(definition)
-        return Plan(status.asString(), times, path, elapsed, states, motions)
+        return Plan(_name(status), times, path, elapsed, states, motions)
 
     def still_valid(self, times_s: FloatArray, configurations_rad: FloatArray, observation: Observation) -> bool:
         """Whether the rest of a path, its first state being now, leads to the goal and is valid as seen now."""
@@ -137,6 +137,11 @@ class Session:
             return np.empty(0), np.empty((0, dof))
         states = [read_state(state, dof) for state in definition.getSolutionPath().getStates()]
         return np.array([t for _, t in states]), np.array([q for q, _ in states])
+
+
+def _name(status: ob.PlannerStatus) -> str:
+    """OMPL's name of ``status``; for the one that OMPL has not named, a name in its manner."""
+    return "Infeasible" if status == ob.PlannerStatus.INFEASIBLE else str(status.asString())
 
 
 def check_fit(specs: Sequence[PlannerSpec], arm: ContinuumArm) -> None:
