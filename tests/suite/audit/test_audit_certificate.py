@@ -1,6 +1,14 @@
 import numpy as np
 import pytest
-from audit_twin import clearances, random_bending, random_motion, smallest_clearance
+from audit_twin import (
+    Motion,
+    backbone,
+    clearances,
+    random_bending,
+    random_direction,
+    random_motion,
+    smallest_clearance,
+)
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -37,6 +45,51 @@ def test_ten_thousand_motions_free_means_free_and_clear_means_free(thousand):
     assert free > 200
     assert clear > 200
     assert called_collisions == 0  # fewer than 1 % are asked for
+
+
+def resting_beside_the_base(gap_m):
+    """Next to it no other obstacle is near: the certificate then leaps as far as its bounds allow."""
+    point = (0.0, 0.0, -(0.018 + 0.01 + gap_m))
+    return Obstacle(radius_m=0.01, motion=Track(times_s=(0.0,), positions_m=(point,)))
+
+
+def random_dart(rng, arm, q):
+    """A small sphere that flies fast and straight at, or just past, the arm."""
+    at_s, velocity = rng.uniform(0.1, 0.9), rng.uniform(1.0, 4.0) * random_direction(rng)
+    points = backbone(arm, q[None], np.linspace(0, 1, 30))[0]
+    there = points[rng.integers(10, len(points))] + rng.uniform(0.0, 0.03) * random_direction(rng)
+    track = Track(
+        times_s=(0.0, 1.0), positions_m=(tuple(there - at_s * velocity), tuple(there + (1 - at_s) * velocity))
+    )
+    return Obstacle(radius_m=0.002, motion=track)
+
+
+@pytest.mark.parametrize("moving", ["darts", "arm"])
+def test_fast_small_things_are_not_leapt_over(moving):
+    rng = np.random.default_rng(5)
+    arm, hits = ContinuumArm(), 0
+    for _ in range(200):
+        q = random_bending(rng, 3, 1.0)
+        if moving == "darts":
+            states, others = np.stack([q, q]), (random_dart(rng, arm, q),)
+        else:
+            # Sections that bend alike while the arm is nearly straight: its tip is as fast as the bound says.
+            states = np.tile(random_bending(rng, 1), 3) * [[-0.4], [0.4]]
+            there = backbone(arm, states.mean(axis=0)[None], np.array([1.0]))[0, -1]
+            point = tuple(there + rng.uniform(0.0, 0.03) * random_direction(rng))
+            others = (Obstacle(radius_m=0.002, motion=Track(times_s=(0.0,), positions_m=(point,))),)
+        scenario = Scenario(
+            id="fast",
+            arm=arm,
+            start_rad=tuple(states[0]),
+            goal_m=(5, 5, 5),
+            obstacles=(resting_beside_the_base(5e-3), *others),
+        )
+        motion = Motion(scenario, np.array([0.0, 1.0]), states)
+        hit = clearances(motion, milliseconds(motion)).min() < -1e-4
+        hits += hit
+        assert not (hit and is_free(audit(*motion)))
+    assert hits > 50
 
 
 @settings(max_examples=300)
