@@ -41,10 +41,14 @@ class ArmPlanner(ob.Planner):
     def solve(self, ptc: ob.PlannerTerminationCondition) -> ob.PlannerStatus:
         """Run ``search`` from the problem's start state and hand its path to OMPL."""
         start = self.getPlannerInputStates().nextStart()
-        if start is None:
+        if start is not None:
+            q, now_s = read_state(start, self.problem.query.arm.dof)
+        elif self.problem.start is not None:
+            # OMPL refuses a start in collision. But this is where the arm is: obstacles grown by a margin or misplaced
+            # by noise may reach there, and it has to get out.
+            q, now_s = self.problem.start
+        else:
             return ob.PlannerStatus(ob.PlannerStatus.INVALID_START)
-        dof = self.problem.query.arm.dof
-        q, now_s = read_state(start, dof)
         if ptc():
             return ob.PlannerStatus(ob.PlannerStatus.TIMEOUT)
         found = self.search(q, now_s, ptc)

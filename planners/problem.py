@@ -200,6 +200,8 @@ class SpaceTimeProblem:
         arm = query.arm
         self.query = query
         self.horizon_s = horizon_s
+        self.start: tuple[FloatArray, float] | None = None
+        """Where the arm is in the latest definition: configuration (dof,) [rad] and time [s]."""
         bending = ob.RealVectorStateSpace(arm.dof)
         bounds = ob.RealVectorBounds(arm.dof)
         bounds.setLow(-arm.max_bend_rad)
@@ -228,6 +230,7 @@ class SpaceTimeProblem:
         self, q: FloatArray, now_s: float, goals: GoalConfigurations, rng: np.random.Generator
     ) -> ob.ProblemDefinition:
         """Pose the solve: from ``q`` (dof,) [rad] at ``now_s`` [s] to the goal, which may be sampled at ``goals``."""
+        self.start = (q, now_s)
         start = self.si.allocState()
         write_state(start, q, now_s)
         definition = ob.ProblemDefinition(self.si)

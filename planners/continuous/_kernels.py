@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from planners.certificate._kernels import is_clear
+from planners.certificate._kernels import CONTACT_M, is_clear
 from planners.steering._kernels import ARRIVED_M, least_duration, steer
 from scenarios.kernels.clearance import arc_clearances
 from scenarios.kernels.jit import kernel
@@ -23,6 +23,7 @@ REFINING_SHARE = 0.5  # of the branches once the goal was reached
 LONGEST_DETOUR = 20  # steps of a branch that does not run for the goal
 BOUNCE_BACK = 8  # a blocked branch goes back by fewer nodes than this
 FAILURE_WEIGHT = 0.3  # a node from which a branch failed at once looks farther away by this share
+ESCAPE_M = 1e-3  # an arm that is too close to an obstacle may come closer by this on its way out
 COMPARED = 256  # nodes that the search for a near one looks at, spread evenly over the tree
 
 
@@ -115,9 +116,17 @@ def _is_free(tree, node, change, time, margin, body, world, stack):
 
 @kernel
 def plant(tree, times, states, margin, body, world, step, stack):
-    """Start the tree with the leading part of a path, times (k,) [s] and states (k, 2n) [rad], that is still free."""
+    """Start the tree with the leading part of a path, times (k,) [s] and states (k, 2n) [rad], that is still free.
+
+    Returns:
+        The clearance to keep [m]: ``margin``, unless the arm already is closer than that to where obstacles may be. It
+        then has to get out without coming much closer.
+    """
     tree.counts[0] = 0
     _append(tree, states[0], _stand(states[0], times[0], body, world, stack), times[0], -1)
+    standing = stack.gaps[0].min() - CONTACT_M
+    if standing <= margin:
+        margin = standing - ESCAPE_M
     tip = stack.arcs[1, stack.arcs.shape[1] - 1, 12:15]
     for k in range(1, times.shape[0]):
         step.change[:] = states[k] - states[k - 1]
@@ -125,6 +134,7 @@ def plant(tree, times, states, margin, body, world, step, stack):
         if not _is_free(tree, k - 1, step.change, times[k], margin, body, world, stack):
             break
         _append(tree, states[k], tip, times[k], k - 1)
+    return margin
 
 
 @kernel
@@ -147,11 +157,12 @@ def grow(tree, node, target, stop, steps, end_time, bounces, budget, rng, body, 
         section_arcs(step.state, body.section_length, stack.arcs[1])
         tip_jacobian(stack.arcs[1], body.section_length, step.jacobian_after)
         duration = least_duration(tree.tips[node], tip, body, step)
-        reached = stop > 0.0 and _distance(tip, target.point) <= stop + ARRIVED_M
+        left = _distance(tip, target.point) - stop if stop > 0.0 else 0.0
+        reached = stop > 0.0 and left <= ARRIVED_M
         if not reached:
             duration = max(duration, budget.duration)
         time = tree.times[node] + duration
-        if time > end_time:
+        if time + max(0.0, left) / body.tip_speed > end_time:  # at best it would arrive too late
             return RAN, node
         if not _is_free(tree, node, step.change, time, budget.margin, body, world, stack):
             if node == first:
@@ -165,7 +176,9 @@ def grow(tree, node, target, stop, steps, end_time, bounces, budget, rng, body, 
             standing = False
             continue
         node = _append(tree, step.state, tip, time, node)
-        step.jacobian[:] = step.jacobian_after
+        for r in range(3):
+            for c in range(step.change.shape[0]):
+                step.jacobian[r, c] = step.jacobian_after[r, c]
         steps -= 1
         if reached:
             return REACHED, node

@@ -79,12 +79,14 @@ class TreePlanner(ArmPlanner):
         query, settings, space = self.problem.query, self._settings, self._workspace
         start_s = float(trunk.times_s[0])
         stop_m = GOAL_SHARE * query.goal_tolerance_m
-        budget = _kernels.Budget(
-            branches, settings.refinements, settings.bounces, settings.enough, settings.step_s, MARGIN_M
-        )
         tree, body = space.tree, self._body
         tree.counts[:] = 0
-        _kernels.plant(tree, trunk.times_s, trunk.configurations_rad, MARGIN_M, body, world, space.step, space.stack)
+        margin_m = _kernels.plant(
+            tree, trunk.times_s, trunk.configurations_rad, MARGIN_M, body, world, space.step, space.stack
+        )
+        budget = _kernels.Budget(
+            branches, settings.refinements, settings.bounces, settings.enough, settings.step_s, margin_m
+        )
         best, longest = _kernels.search(
             query.goal_m, stop_m, start_s + settings.horizon_s, budget, self._rng, body, world, *space
         )

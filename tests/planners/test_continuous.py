@@ -85,16 +85,25 @@ def test_without_a_way_to_the_goal_the_path_is_free_for_as_long_as_can_be() -> N
     assert not planned.still_valid(plan.times_s, plan.configurations_rad, observe(scenario))
 
 
-def test_an_arm_that_cannot_move_at_all_gets_no_path() -> None:
+def test_an_arm_that_seems_to_be_touched_gets_out() -> None:
     start = np.full(6, 0.2)
+    outward = ARM.jacobian(start)[:, 0] / np.linalg.norm(ARM.jacobian(start)[:, 0])
+    center = ARM.tip(start) + (ARM.radius_m + 0.02 - 0.001) * outward  # 1 mm inside
     scenario = Scenario(
-        id="stuck",
+        id="touched",
         arm=ARM,
         start_rad=tuple(start.tolist()),
-        goal_m=(0.2, 0.0, 0.2),
-        obstacles=(still_sphere((0.0, 0.0, 0.0), 0.05),),
+        goal_m=tuple(ARM.tip(start - 0.4).tolist()),
+        obstacles=(still_sphere(tuple(center.tolist()), 0.02),),
     )
-    assert not len(session(scenario).plan(start, 0.0, observe(scenario)).times_s)
+    plan = session(scenario).plan(start, 0.0, observe(scenario))
+    times = np.linspace(0.0, plan.times_s[-1], 200)
+    path = np.stack([np.interp(times, plan.times_s, column) for column in plan.configurations_rad.T], axis=1)
+    world = make_world(0.0, 1.0, np.tile(center, (2, 1, 1)), np.array([0.02]))
+    gaps = clearances(path, times, ARM.section_length_m, ARM.radius_m, world)
+    assert plan.status == "Exact solution"
+    assert gaps.min() > -0.0025
+    assert gaps[-1] > 0.0
 
 
 @pytest.mark.parametrize("margin", [0.0, 0.004])
