@@ -55,9 +55,9 @@ class ContinuumArm(BaseModel):
         q = np.atleast_2d(np.ascontiguousarray(configurations, dtype=np.float64))
         if q.ndim != 2 or q.shape[1] != self.dof:
             raise ScenarioError(f"configuration: found shape {np.shape(configurations)}, allowed ({self.dof},)")
-        if not np.isfinite(q).all():
-            raise ScenarioError("configuration: found a number that is not finite, allowed finite numbers [rad]")
-        if not self.within_bends(q).all():
+        if not self.within_bends(q).all():  # nor is a bend that is not a number
+            if not np.isfinite(q).all():
+                raise ScenarioError("configuration: found a number that is not finite, allowed finite numbers [rad]")
             bend = np.hypot(q[:, 0::2], q[:, 1::2]).max()
             raise ScenarioError(f"configuration: found a bend of {bend:.4f} rad, allowed up to {self.max_bend_rad:.4f}")
         return q

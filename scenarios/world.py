@@ -32,7 +32,9 @@ def make_world(start_s: float, step_s: float, centers_m: FloatArray, radii_m: Fl
     centers = np.ascontiguousarray(centers_m, dtype=np.float64)
     if centers.ndim != 3 or centers.shape[0] < 2 or centers.shape[2] != 3:
         raise ValueError(f"centers_m: found shape {centers.shape}, allowed (T >= 2, m, 3)")
-    radii = np.ascontiguousarray(np.broadcast_to(np.asarray(radii_m, dtype=np.float64), centers.shape[:2]))
+    # A copy: a broadcast array is read-only, for which every kernel would be compiled once more.
+    radii = np.empty(centers.shape[:2])
+    radii[:] = radii_m
     if not (np.isfinite(centers).all() and np.isfinite(radii).all() and step_s > 0):
         raise ValueError("world: samples must be finite and step_s positive")
     approach = np.linalg.norm(np.diff(centers, axis=0), axis=2) + np.maximum(np.diff(radii, axis=0), 0.0)

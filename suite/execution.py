@@ -1,5 +1,7 @@
 """What the arm does: it follows a planner's timed path step by step, and every state it passes is kept."""
 
+import math
+
 import numpy as np
 import numpy.typing as npt
 
@@ -69,10 +71,10 @@ class Execution:
         if self._path is None:
             return None
         times, path = self._path
-        ahead = times > self.now_s
-        if not ahead.any():
+        first = times.searchsorted(self.now_s, "right")
+        if first == len(times):
             return None
-        return np.append(self.now_s, times[ahead]), np.vstack([self.q, path[ahead]])
+        return np.concatenate([[self.now_s], times[first:]]), np.concatenate([self.q[None], path[first:]])
 
     def take(self, times_s: FloatArray, configurations_rad: FloatArray) -> None:
         """Follow this path from now on; an empty one means holding still."""
@@ -80,13 +82,13 @@ class Execution:
 
     def step(self) -> None:
         """Move on to the next whole step along the path, holding still where it has ended; stop on arrival."""
-        end_s = (np.floor(self.now_s / STEP_S) + 1.0) * STEP_S
+        end_s = (math.floor(self.now_s / STEP_S) + 1.0) * STEP_S
         rest = self.rest
         if rest is None:
             times, path = np.array([end_s]), self.q[None]
         else:
-            within = rest[0] <= end_s
-            times, path = rest[0][within][1:], rest[1][within][1:]
+            last = rest[0].searchsorted(end_s, "right")
+            times, path = rest[0][1:last], rest[1][1:last]
             if not len(times) or times[-1] < end_s:
                 at_end = np.array([np.interp(end_s, rest[0], column) for column in rest[1].T])
                 times, path = np.append(times, end_s), np.vstack([path, at_end])

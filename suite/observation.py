@@ -35,8 +35,8 @@ class Observer:
 
     def until(self, now_s: float) -> Observation:
         """Everything observed up to and including ``now_s``; NaN where an observation was lost."""
-        seen = self._times_s <= now_s
-        return Observation(self._times_s[seen], self._positions_m[seen], self._radii_m)
+        seen = self._times_s.searchsorted(now_s, "right")
+        return Observation(self._times_s[:seen], self._positions_m[:seen], self._radii_m)
 
 
 def _positions(scenario: Scenario, times_s: FloatArray) -> FloatArray:

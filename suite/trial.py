@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -33,7 +34,7 @@ class TrialTask:
     dropout: float = 0.0
     """Probability that an observation is lost."""
 
-    @property
+    @functools.cached_property  # it goes with the task into the worker
     def key(self) -> tuple[str, str]:
         """Scenario hash and planner label, which name a trial within a run."""
         return self.scenario.content_hash, self.spec.label
@@ -61,12 +62,13 @@ class TrialResult(NamedTuple):
 
 def trial_row(task: TrialTask, measured: Mapping[str, Any]) -> Row:
     """The row of ``task``: who ran what, and what was ``measured``; what is missing becomes None."""
+    scenario_hash, planner = task.key
     identity = {
         "scenario_id": task.scenario.id,
-        "scenario_hash": task.scenario.content_hash,
+        "scenario_hash": scenario_hash,
         "family": task.scenario.family,
         "n_obstacles": len(task.scenario.obstacles),
-        "planner": task.spec.label,
+        "planner": planner,
         "settings": task.spec.settings.model_dump_json(),
         "predictor": task.predictor,
         "limits": task.limits,

@@ -5,6 +5,7 @@ workspace cube that holds its tip. Here every section takes the same hexagonal l
 the disc of allowed bends evenly; 0.5 rad gives 151 bends and reproduces the published workspace box.
 """
 
+import functools
 import hashlib
 import math
 import os
@@ -105,12 +106,17 @@ def enumerated_space(arm: ContinuumArm, spacing_rad: float) -> EnumeratedSpace:
     if not folder.is_dir():
         cubes = _kernels.enumerate_cubes(bends, arm.n_sections, arm.section_length_m, CUBE_M, half)
         _store(folder, *_kernels.group_by_cube(cubes, (2 * half) ** 3))
-    # Mapped, not read: worker processes share the pages. Kernels want plain arrays.
+    table = _kernels.arc_table(bends, arm.section_length_m)
+    return EnumeratedSpace(bends, table, arm.n_sections, CUBE_M, half, *_mapped(folder))
+
+
+@functools.lru_cache(maxsize=4)  # every trial asks
+def _mapped(folder: Path) -> tuple[IntArray, IntArray]:
+    """Offsets and codes, mapped, not read: worker processes share the pages. Kernels want plain arrays."""
     offsets, codes = (
         np.asarray(np.load(folder / f"{name}.npy", mmap_mode="r", allow_pickle=False)) for name in ("offsets", "codes")
     )
-    table = _kernels.arc_table(bends, arm.section_length_m)
-    return EnumeratedSpace(bends, table, arm.n_sections, CUBE_M, half, offsets, codes)
+    return offsets, codes
 
 
 def _store(folder: Path, offsets: IntArray, codes: IntArray) -> None:

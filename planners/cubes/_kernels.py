@@ -164,8 +164,8 @@ def free_layer(cube, with_current, q_now, space, section_length, centers, reach)
 
 @kernel
 def digits(codes, base, n):
-    """Lattice numbers (len(codes), n) of codes, first section first; CURRENT in every place for CURRENT."""
-    out = np.full((codes.shape[0], n), CURRENT, np.int64)
+    """Lattice numbers (len(codes), n) of codes, first section first; ``base`` in every place for CURRENT."""
+    out = np.full((codes.shape[0], n), base, np.int64)
     for a in range(codes.shape[0]):
         code = codes[a]
         if code != CURRENT:
@@ -176,36 +176,52 @@ def digits(codes, base, n):
 
 
 @kernel
-def layer_costs(q_now, before, after, bends, table):
-    """Smoothness (paper, section II-D) between every configuration of two layers: (len(before), len(after)) [rad]."""
+def changes_from(q_now, bends):
+    """Orientation change from each section of ``q_now`` (2n,) to every lattice bend: (n, B + 1) [rad].
+
+    The last column is the change from the present configuration to itself.
+    """
     n, base = q_now.shape[0] // 2, bends.shape[0]
-    from_now = np.empty((n, base + 1))
-    from_now[:, CURRENT] = 0.0  # the last column: from the present configuration to itself
+    out = np.zeros((n, base + 1))
     for i in range(n):
         for b in range(base):
-            from_now[i, b] = section_change(q_now[2 * i], q_now[2 * i + 1], bends[b, 0], bends[b, 1])
-    rows, columns = digits(before, base, n), digits(after, base, n)
-    out = np.zeros((before.shape[0], after.shape[0]))
-    for a in range(rows.shape[0]):
-        for b in range(columns.shape[0]):
-            for i in range(n):
-                if rows[a, i] == CURRENT:
-                    out[a, b] += from_now[i, columns[b, i]]
-                elif columns[b, i] == CURRENT:
-                    out[a, b] += from_now[i, rows[a, i]]
-                else:
-                    out[a, b] += table[rows[a, i], columns[b, i]]
+            out[i, b] = section_change(q_now[2 * i], q_now[2 * i + 1], bends[b, 0], bends[b, 1])
     return out
 
 
 @kernel
-def relax_layer(cost, weights):
-    """One round of Bellman-Ford between two layers: best cost of each configuration after, and where it comes from."""
-    best = np.full(weights.shape[1], np.inf)
-    parent = np.full(weights.shape[1], -1, np.int64)
-    for a in range(weights.shape[0]):
-        for b in range(weights.shape[1]):
-            through = cost[a] + weights[a, b]
+def relax_layer(cost, before, after, from_now, table, possible):
+    """One round of Bellman-Ford between two layers: best cost of each configuration after, and where it comes from.
+
+    An edge costs its smoothness (paper, section II-D).
+
+    Args:
+        cost: Best cost of each configuration before, shape (A,), [rad].
+        before: Codes of the configurations before, shape (A,).
+        after: Codes of the configurations after, shape (C,).
+        from_now: ``changes_from`` the present configuration.
+        table: ``change_table`` of the lattice.
+        possible: Which edges there are, shape (A, C); (0, 0) for all.
+    """
+    n, base = from_now.shape[0], table.shape[0]
+    rows, columns = digits(before, base, n), digits(after, base, n)
+    best = np.full(after.shape[0], np.inf)
+    parent = np.full(after.shape[0], -1, np.int64)
+    change = np.empty((n, base + 1))
+    for a in range(rows.shape[0]):
+        for i in range(n):
+            if rows[a, i] == base:
+                change[i] = from_now[i]
+            else:
+                change[i, :base] = table[rows[a, i]]
+                change[i, base] = from_now[i, rows[a, i]]
+        for b in range(columns.shape[0]):
+            if possible.shape[0] > 0 and not possible[a, b]:
+                continue
+            weight = 0.0
+            for i in range(n):
+                weight += change[i, columns[b, i]]
+            through = cost[a] + weight
             if through < best[b]:
                 best[b], parent[b] = through, a
     return best, parent
@@ -239,13 +255,18 @@ def static_path(start, goal, purged, offsets, half, cube_m):
     if purged[goal] or offsets[goal] == offsets[goal + 1]:  # else the search would visit every cube to find no path
         return np.empty(0, np.int64)
     cost = np.full(side * side * side, np.inf)
-    parent = np.full(side * side * side, -1, np.int32)
+    parent = np.empty(side * side * side, np.int32)
+    expanded = np.zeros(side * side * side, np.bool_)  # and its cost has not changed since
+    steps = cube_m * np.sqrt(np.arange(4.0))  # by the number of axes along which a move goes
     cost[start] = 0.0
     heap = [(0.0, start)]
     while len(heap) > 0:
         _, cube = heapq.heappop(heap)
         if cube == goal:
             break
+        if expanded[cube]:
+            continue
+        expanded[cube] = True
         x, y, z = cube // (side * side), cube // side % side, cube % side
         for move in range(27):
             i, j, k = x + move // 9 - 1, y + move // 3 % 3 - 1, z + move % 3 - 1
@@ -254,9 +275,9 @@ def static_path(start, goal, purged, offsets, half, cube_m):
             other = (i * side + j) * side + k
             if purged[other] or offsets[other] == offsets[other + 1]:
                 continue
-            through = cost[cube] + cube_m * math.sqrt((i - x) ** 2 + (j - y) ** 2 + (k - z) ** 2)
+            through = cost[cube] + steps[abs(i - x) + abs(j - y) + abs(k - z)]
             if through < cost[other] - 1e-12:
-                cost[other], parent[other] = through, cube
+                cost[other], parent[other], expanded[other] = through, cube, False
                 left = cube_m * math.sqrt((i - gx) ** 2 + (j - gy) ** 2 + (k - gz) ** 2)
                 heapq.heappush(heap, (through + left, other))
     if not np.isfinite(cost[goal]):

@@ -14,6 +14,9 @@ from scenarios.arm import ContinuumArm, FloatArray
 EdgeFilter = Callable[[int, FloatArray, FloatArray], npt.NDArray[np.bool_]]
 """Which motions from configurations (A, dof) to (B, dof) are possible from step k to k + 1: (A, B)."""
 
+_ALL = np.empty((0, 0), np.bool_)
+"""Every edge, to the kernel."""
+
 
 @functools.lru_cache(maxsize=8)
 def _change_table(bends: bytes) -> FloatArray:
@@ -62,11 +65,10 @@ class LayeredGraph:
         """
         cost = np.zeros(1)
         parents = []
+        from_now = _kernels.changes_from(self._q, self._space.bends_rad)
         for step, (before, after) in enumerate(zip(self.layers, self.layers[1:], strict=False)):
-            weights = _kernels.layer_costs(self._q, before, after, self._space.bends_rad, self._table)
-            if possible is not None:
-                weights[~possible(step, self._decode(before), self._decode(after))] = np.inf
-            cost, parent = _kernels.relax_layer(cost, weights)
+            allowed = _ALL if possible is None else possible(step, self._decode(before), self._decode(after))
+            cost, parent = _kernels.relax_layer(cost, before, after, from_now, self._table, allowed)
             parents.append(parent)
         if not np.isfinite(cost).any():
             return None

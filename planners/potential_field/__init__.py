@@ -46,13 +46,8 @@ class PotentialFieldPlanner(ArmPlanner):
         """One step of Euler integration; the field always says something."""
         del stop  # one bounded step
         arm, world = self.problem.query.arm, self.problem.query.world
-        path = [q]
-        for _ in range(SUBSTEPS):
-            path.append(
-                _kernels.field_step(
-                    path[-1], self.problem.query.goal_m, world.centers_m[0], world.radii_m[0], arm.section_length_m,
-                    arm.radius_m, arm.max_bend_rad, arm.max_bend_rate_rad_s, arm.max_tip_speed_m_s,
-                    STEP_S / SUBSTEPS, self._gains,
-                )
-            )  # fmt: skip
-        return TimedPath(now_s + STEP_S / SUBSTEPS * np.arange(SUBSTEPS + 1, dtype=np.float64), np.array(path))
+        path = _kernels.follow_field(
+            q, self.problem.query.goal_m, world.centers_m[0], world.radii_m[0], arm.section_length_m, arm.radius_m,
+            arm.max_bend_rad, arm.max_bend_rate_rad_s, arm.max_tip_speed_m_s, STEP_S / SUBSTEPS, SUBSTEPS, self._gains,
+        )  # fmt: skip
+        return TimedPath(now_s + STEP_S / SUBSTEPS * np.arange(SUBSTEPS + 1, dtype=np.float64), path)

@@ -105,3 +105,27 @@ def field_step(q, goal, centers, radii, section_length, arm_radius, max_bend, be
     target = q + (target - q) * min(1.0, RESERVE * bend_rate * duration / max(turn, 1e-12))
     moved = fastest_tip(q, target, section_length)
     return q + (target - q) * min(1.0, RESERVE * tip_speed * duration / max(moved, 1e-12))
+
+
+@kernel
+def follow_field(
+    q, goal, centers, radii, section_length, arm_radius, max_bend, bend_rate, tip_speed, duration, steps, gains
+):
+    """``field_step`` ``steps`` times over: the states passed, (steps + 1, 2n) [rad], ``q`` first."""
+    out = np.empty((steps + 1, q.shape[0]))
+    out[0] = q
+    for k in range(steps):
+        out[k + 1] = field_step(
+            out[k],
+            goal,
+            centers,
+            radii,
+            section_length,
+            arm_radius,
+            max_bend,
+            bend_rate,
+            tip_speed,
+            duration,
+            gains,
+        )
+    return out

@@ -62,13 +62,13 @@ class TemporalGraph:
             raise ValueError(f"edges: found a vertex outside 0 to {n_vertices - 1}")
         if (ends[3] < 1).any() or not (cost >= 0).all():
             raise ValueError("edges: mu must be at least 1 and d must not be negative or NaN")
-        order = np.argsort(ends[2], kind="stable")
+        if (ends[2][1:] < ends[2][:-1]).any():
+            order = np.argsort(ends[2], kind="stable")
+            ends, cost = [x[order] for x in ends], cost[order]
         self.n_vertices = n_vertices
-        self.u, self.v, self.t, self.mu = (x[order] for x in ends)
-        self.d = cost[order]
-        self.times = _distinct(np.concatenate([self.t, self.t + self.mu]))
-        self._departure = np.searchsorted(self.times, self.t)
-        self._arrival = np.searchsorted(self.times, self.t + self.mu)
+        self.u, self.v, self.t, self.mu = ends
+        self.d = cost
+        self.times, self._departure, self._arrival = _numbered(self.t, self.t + self.mu)
 
     def earliest_arrival(self, source: int, departures: Window, arrive_by: int) -> FloatArray:
         """Earliest arrival at each vertex of paths that leave ``source`` within ``departures``: (n,), inf if none."""
@@ -137,8 +137,15 @@ class TemporalGraph:
         return first, int(np.searchsorted(self.times, window.last, side="right")) - 1
 
 
-def _distinct(times: IntArray) -> IntArray:
-    """The distinct times in order; every step between the first and the last where that is not many more."""
-    if len(times) and times.max() - times.min() <= len(times):  # spares the sort that finds the distinct ones
-        return np.arange(times.min(), times.max() + 1)
-    return np.unique(times)
+def _numbered(departures: IntArray, arrivals: IntArray) -> tuple[IntArray, IntArray, IntArray]:
+    """The distinct times in order, and the number among them of each departure and each arrival.
+
+    Every step between the first time and the last is one, where that is not many more: it spares the sort.
+    """
+    if not len(departures):
+        return departures, departures, arrivals
+    first, last = departures.min(), arrivals.max()
+    if last - first <= 2 * len(departures):
+        return np.arange(first, last + 1), departures - first, arrivals - first
+    times = np.unique(np.concatenate([departures, arrivals]))
+    return times, np.searchsorted(times, departures), np.searchsorted(times, arrivals)
