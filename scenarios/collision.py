@@ -1,5 +1,7 @@
 """Checked collision queries of an arm among moving spheres; a touch (clearance <= 0) is a collision."""
 
+import math
+
 import numpy as np
 import numpy.typing as npt
 
@@ -57,6 +59,8 @@ def are_states_valid(
         ScenarioError: Wrong shapes, numbers that are not finite, bends past the limit.
     """
     q = arm.check_configurations(configurations)
+    if not math.isfinite(time_s):
+        raise ScenarioError(f"time_s: found {time_s}, allowed finite seconds")
     centers, radii = obstacles_at(world, time_s)
     free: npt.NDArray[np.bool_] = batch.states_free(q, arm.section_length_m, centers, radii + arm.radius_m)
     return free
