@@ -5,7 +5,7 @@ import math
 import numpy as np
 from hypothesis import strategies as st
 
-from scenarios import ContinuumArm, Obstacle, Orbit, SampledWorld, Scenario, Track, make_world
+from scenarios import ContinuumArm, Line, Obstacle, Orbit, SampledWorld, Scenario, Track, Wander, Wave, make_world
 
 ARM = ContinuumArm()
 
@@ -42,15 +42,18 @@ def empty_world() -> SampledWorld:
 
 coordinates = st.floats(-100, 100)
 points = st.tuples(coordinates, coordinates, coordinates)
-finite = st.floats(-1e6, 1e6)
+rates = st.floats(-10, 10)
 orbits = st.builds(
     Orbit,
     center_m=points,
     radius_m=st.floats(0, 100),
     normal=points.filter(lambda p: np.linalg.norm(p) > 1e-3),
-    rate_rad_s=st.floats(-10, 10),
-    phase_rad=st.floats(-10, 10),
+    rate_rad_s=rates,
+    phase_rad=rates,
 )
+lines = st.builds(Line, point_m=points, velocity_m_s=points)
+waves = st.builds(Wave, amplitude_m=points, rate_rad_s=rates, phase_rad=rates)
+wanders = st.builds(Wander, center_m=points, waves=st.lists(waves, min_size=1, max_size=4).map(tuple))
 
 
 @st.composite
@@ -60,10 +63,13 @@ def tracks(draw: st.DrawFn) -> Track:
     return Track(times_s=tuple(t / 8 for t in times), positions_m=tuple(positions))
 
 
+motions = st.one_of(orbits, lines, wanders, tracks())
+
+
 @st.composite
 def scenarios(draw: st.DrawFn) -> Scenario:
     n = draw(st.integers(1, 4))
-    obstacles = st.builds(Obstacle, radius_m=st.floats(0, 10, exclude_min=True), motion=st.one_of(orbits, tracks()))
+    obstacles = st.builds(Obstacle, radius_m=st.floats(0, 10, exclude_min=True), motion=motions)
     return Scenario(
         id=draw(st.from_regex(r"[A-Za-z0-9._-]{1,20}", fullmatch=True)),
         family=draw(st.from_regex(r"[A-Za-z0-9._-]{1,20}", fullmatch=True)),

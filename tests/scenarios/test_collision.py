@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from strategies import ARM, configurations, empty_world, random_configurations, random_world, seeds
 from twins.clearance import fcl_clearance, sampled_clearance, spheres_at
 
-from scenarios import ContinuumArm, ScenarioError, clearance, clearances, is_state_valid, make_world
+from scenarios import ContinuumArm, ScenarioError, are_states_valid, clearance, clearances, is_state_valid, make_world
 
 # The nearest backbone point lies at most half a spacing from a sample: 0.15 m / 400 / 2.
 SAMPLING_M = 0.15 / 400 / 2
@@ -119,16 +119,37 @@ def test_many_at_once_equal_one_by_one(n: int) -> None:
     np.testing.assert_array_equal(clearances(arm, q, 0.25, world), clearances(arm, q, np.full(50, 0.25), world))
 
 
+@pytest.mark.parametrize("count", [1, 63, 64, 65, 1000])
+@pytest.mark.parametrize("n", [1, 3, 5])
+def test_a_block_of_states_is_judged_as_each_of_them(n: int, count: int) -> None:
+    rng = np.random.default_rng(count)
+    arm, world = ContinuumArm(n_sections=n), random_world(rng, 6, spread_m=0.2)
+    q = random_configurations(rng, count, n)
+    q[::5, :2] = 0.0
+    q[1::5, -2:] = math.pi, 0.0
+    q[2::5] *= 1e-7
+    gaps = clearances(arm, q, 0.3, world)
+    free = are_states_valid(arm, q, 0.3, world)
+    assert ((gaps > 1e-9) <= free).all()
+    assert ((gaps < -1e-9) <= ~free).all()
+    assert min(n, count) == 1 or 0.02 < free.mean() < 0.98
+    assert are_states_valid(arm, q, 0.3, empty_world()).all()
+
+
 @pytest.mark.parametrize(
     ("q", "times", "message"),
     [
         (np.zeros((2, 4)), 0.0, "shape"),
         (np.full((2, 6), math.nan), 0.0, "not finite"),
         (np.full((2, 6), 3.0), 0.0, "bend"),
-        (np.zeros((2, 6)), [0.0, math.nan], "times_s"),
-        (np.zeros((2, 6)), math.inf, "times_s"),
+        (np.zeros((2, 6)), [0.0, math.nan], "time"),
+        (np.zeros((2, 6)), math.inf, "time"),
+        (np.zeros((2, 6)), math.nan, "time"),
     ],
 )
 def test_nonsense_is_refused(q: np.ndarray, times: object, message: str) -> None:
     with pytest.raises(ScenarioError, match=message):
         clearances(ARM, q, times, empty_world())
+    if np.ndim(times) == 0:
+        with pytest.raises(ScenarioError, match=message):
+            are_states_valid(ARM, q, float(times), empty_world())

@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 from hypothesis import given
-from hypothesis import strategies as st
-from strategies import orbits, tracks
+from strategies import motions, orbits, tracks
 
-from scenarios import Orbit, Track
+from scenarios import Line, Orbit, Track, Wander, Wave
+from scenarios.motion import Motion
 
 TIMES = np.linspace(-20, 200, 441)
 
@@ -36,18 +36,40 @@ def test_phase_and_rate_add_up() -> None:
     np.testing.assert_allclose(early.position(TIMES + 2), late.position(TIMES), atol=1e-12)
 
 
-@given(st.one_of(orbits, tracks()))
-def test_nothing_outruns_its_speed_bound(motion: Orbit | Track) -> None:
+@given(motions)
+def test_nothing_outruns_its_speed_bound(motion: Motion) -> None:
     steps = np.linalg.norm(np.diff(motion.position(TIMES), axis=0), axis=1)
     assert (steps <= motion.speed_bound_m_s * np.diff(TIMES) + 1e-9).all()
 
 
 def test_speed_bounds_are_reached() -> None:
+    line = Line(point_m=(0, 0, 0), velocity_m_s=(0, 0.3, -0.4))
+    assert line.speed_bound_m_s == pytest.approx(0.5)
+    crossed = Wander(
+        center_m=(0, 0, 0),
+        waves=(
+            Wave(amplitude_m=(3, 0, 0), rate_rad_s=1, phase_rad=0),
+            Wave(amplitude_m=(-1, 0, 0), rate_rad_s=1, phase_rad=0),
+            Wave(amplitude_m=(0, 1.5, 0), rate_rad_s=2, phase_rad=0),
+        ),
+    )
+    assert crossed.speed_bound_m_s == pytest.approx(5)  # (3 + 1, 3), with phases that bring all to their peak at once
     orbit = Orbit(center_m=(0, 0, 0), radius_m=0.1, normal=(1, 1, 1), rate_rad_s=-0.15, phase_rad=0)
     track = Track(times_s=(0, 1, 3), positions_m=((0, 0, 0), (3, 4, 0), (3, 4, 1)))
     assert orbit.speed_bound_m_s == pytest.approx(0.015)
     assert track.speed_bound_m_s == pytest.approx(5)
     assert Track(times_s=(4,), positions_m=((1, 2, 3),)).speed_bound_m_s == 0
+
+
+def test_lines_and_waves_by_hand() -> None:
+    line = Line(point_m=(1, 2, 3), velocity_m_s=(0.5, 0, -1))
+    np.testing.assert_allclose(line.position(np.array([-2, 0, 4])), [[0, 2, 5], [1, 2, 3], [3, 2, -1]])
+    waves = (
+        Wave(amplitude_m=(2, 0, 0), rate_rad_s=math.pi, phase_rad=math.pi / 2),
+        Wave(amplitude_m=(0, 1, 1), rate_rad_s=0.0, phase_rad=math.pi / 2),
+    )
+    wander = Wander(center_m=(5, 0, 0), waves=waves)
+    np.testing.assert_allclose(wander.position(np.array([0, 0.5, 1])), [[7, 1, 1], [5, 1, 1], [3, 1, 1]], atol=1e-12)
 
 
 def test_a_track_is_straight_between_its_points_and_rests_outside_them() -> None:
