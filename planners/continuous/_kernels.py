@@ -23,7 +23,7 @@ REFINING_SHARE = 0.5  # of the branches once the goal was reached
 LONGEST_DETOUR = 20  # steps of a branch that does not run for the goal
 BOUNCE_BACK = 8  # a blocked branch goes back by fewer nodes than this
 FAILURE_WEIGHT = 0.3  # a node from which a branch failed at once looks farther away by this share
-ESCAPE_M = 1e-3  # an arm that is too close to an obstacle may come closer by this on its way out
+ESCAPE_M = 2e-4  # an arm that is too close to an obstacle may come closer by this in a step of its way out
 COMPARED = 256  # nodes that the search for a near one looks at, spread evenly over the tree
 
 
@@ -104,8 +104,19 @@ def _stand(q, time, body, world, stack):
 
 
 @kernel
+def _is_too_close(margin, stack):
+    """Whether the state in row 0 of the stack does not keep the margin."""
+    return stack.gaps[0].min() <= margin + CONTACT_M
+
+
+@kernel
 def _is_free(tree, node, change, time, margin, body, world, stack):
-    """Whether the step from ``node`` to ``time``, laid out in the stack, is free; counts what it took."""
+    """Whether the step from ``node`` to ``time``, laid out in the stack, is free; counts what it took.
+
+    An arm that stands closer than the margin to where obstacles may be has to get out without coming closer.
+    """
+    if _is_too_close(margin, stack):
+        margin = stack.gaps[0].min() - CONTACT_M - ESCAPE_M
     free, states = is_clear(
         tree.states[node], tree.times[node], change, time, margin, body.section_length, body.radius, world, stack
     )
@@ -116,17 +127,9 @@ def _is_free(tree, node, change, time, margin, body, world, stack):
 
 @kernel
 def plant(tree, times, states, margin, body, world, step, stack):
-    """Start the tree with the leading part of a path, times (k,) [s] and states (k, 2n) [rad], that is still free.
-
-    Returns:
-        The clearance to keep [m]: ``margin``, unless the arm already is closer than that to where obstacles may be. It
-        then has to get out without coming much closer.
-    """
+    """Start the tree with the leading part of a path, times (k,) [s] and states (k, 2n) [rad], that is still free."""
     tree.counts[0] = 0
     _append(tree, states[0], _stand(states[0], times[0], body, world, stack), times[0], -1)
-    standing = stack.gaps[0].min() - CONTACT_M
-    if standing <= margin:
-        margin = standing - ESCAPE_M
     tip = stack.arcs[1, stack.arcs.shape[1] - 1, 12:15]
     for k in range(1, times.shape[0]):
         step.change[:] = states[k] - states[k - 1]
@@ -134,7 +137,6 @@ def plant(tree, times, states, margin, body, world, step, stack):
         if not _is_free(tree, k - 1, step.change, times[k], margin, body, world, stack):
             break
         _append(tree, states[k], tip, times[k], k - 1)
-    return margin
 
 
 @kernel
@@ -181,7 +183,7 @@ def grow(tree, node, target, stop, steps, end_time, bounces, budget, rng, body, 
                 step.jacobian[r, c] = step.jacobian_after[r, c]
         steps -= 1
         if reached:
-            return REACHED, node
+            return BLOCKED if _is_too_close(budget.margin, stack) else REACHED, node
     return RAN, node
 
 

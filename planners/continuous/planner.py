@@ -81,11 +81,9 @@ class TreePlanner(ArmPlanner):
         stop_m = GOAL_SHARE * query.goal_tolerance_m
         tree, body = space.tree, self._body
         tree.counts[:] = 0
-        margin_m = _kernels.plant(
-            tree, trunk.times_s, trunk.configurations_rad, MARGIN_M, body, world, space.step, space.stack
-        )
+        _kernels.plant(tree, trunk.times_s, trunk.configurations_rad, MARGIN_M, body, world, space.step, space.stack)
         budget = _kernels.Budget(
-            branches, settings.refinements, settings.bounces, settings.enough, settings.step_s, margin_m
+            branches, settings.refinements, settings.bounces, settings.enough, settings.step_s, MARGIN_M
         )
         best, longest = _kernels.search(
             query.goal_m, stop_m, start_s + settings.horizon_s, budget, self._rng, body, world, *space

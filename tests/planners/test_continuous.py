@@ -102,7 +102,7 @@ def test_an_arm_that_seems_to_be_touched_gets_out() -> None:
     world = make_world(0.0, 1.0, np.tile(center, (2, 1, 1)), np.array([0.02]))
     gaps = clearances(path, times, ARM.section_length_m, ARM.radius_m, world)
     assert plan.status == "Exact solution"
-    assert gaps.min() > -0.0025
+    assert gaps.min() > -0.002
     assert gaps[-1] > 0.0
 
 
