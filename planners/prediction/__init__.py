@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from planners.prediction.arc import ArcPredictor
 from planners.prediction.cubic import CubicPredictor
+from planners.prediction.kalman import KalmanPredictor
 from planners.prediction.observation import Observation
 from planners.prediction.portfolio import PortfolioPredictor
 from planners.prediction.predictor import Forecast, Prediction, Predictor
@@ -27,9 +28,10 @@ PREDICTORS: dict[str, PredictorEntry] = {
     "velocity": PredictorEntry("constant velocity over the last 5 observations", lambda _: VelocityPredictor()),
     "cubic": PredictorEntry("cubic spline over the last 5 observations (the paper's)", lambda _: CubicPredictor()),
     "arc": PredictorEntry("circular arc through everything seen", lambda _: ArcPredictor()),
+    "kalman": PredictorEntry("Kalman filters of constant velocity and acceleration", lambda _: KalmanPredictor()),
     "portfolio": PredictorEntry(
-        "per obstacle the model that hindsight favours",
-        lambda _: PortfolioPredictor([ArcPredictor(), ArcPredictor(window=8), VelocityPredictor()]),
+        "arc, kalman and cubic, each obstacle by what hindsight favours",
+        lambda _: PortfolioPredictor([ArcPredictor(), KalmanPredictor(), CubicPredictor()]),
     ),
     "truth": PredictorEntry(
         "the true motion: a bound", lambda scenario: TruthPredictor(scenario.obstacles), is_oracle=True

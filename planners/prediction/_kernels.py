@@ -6,6 +6,10 @@ import numpy as np
 
 from scenarios.kernels.jit import kernel
 
+LEAST_BOUND_M = 1e-9
+LEAST_SCORE = 1e-18
+"""Bounds [m] and scores [m^2/s^2] below these are as good as none."""
+
 
 @kernel
 def invert(a, n):
@@ -24,6 +28,35 @@ def invert(a, n):
                 a[i, p] = 0.0
                 for j in range(n):
                     a[i, j] -= factor * a[p, j]
+
+
+@kernel
+def solve(a, n, damping, factor, x):
+    """Solve ``a[:n, :n] x = a[:n, n]``, the matrix symmetric by its lower half, its diagonal grown by the damping.
+
+    ``factor`` (n, n) is work space. Returns the product of ``x`` and the right side.
+    """
+    for i in range(n):
+        for j in range(i + 1):
+            entry = a[i, j] if i > j else a[i, i] * (1.0 + damping)
+            for k in range(j):
+                entry -= factor[i, k] * factor[j, k]
+            if i > j:
+                factor[i, j] = entry * factor[j, j]
+            else:  # its reciprocal; nothing where nothing was seen
+                factor[i, i] = 1.0 / math.sqrt(entry) if entry > 0.0 else 0.0
+    product = 0.0
+    for i in range(n):
+        x[i] = a[i, n]
+        for k in range(i):
+            x[i] -= factor[i, k] * x[k]
+        x[i] *= factor[i, i]
+        product += x[i] * x[i]
+    for i in range(n - 1, -1, -1):
+        for k in range(i + 1, n):
+            x[i] -= factor[k, i] * x[k]
+        x[i] *= factor[i, i]
+    return product
 
 
 @kernel
@@ -81,39 +114,49 @@ def window_start(positions, last, window):
 def follow_lines(times, positions, radii, origins, targets, ahead, window, floor, speed_radii):
     """Straight lines through the last ``window`` observations at each of ``origins``.
 
-    Arguments and results are those of ``arc._kernels.follow``.
+    The other arguments and the results are those of ``arc._kernels.follow``.
     """
-    n_origins, m = origins.shape[0], positions.shape[1]
-    past, past_var = np.zeros((*targets.shape, m, 3)), np.zeros((*targets.shape, m))
-    centers, var = np.empty((ahead.shape[0], m, 3)), np.empty((ahead.shape[0], m))
-    noise = np.empty((n_origins, m))
+    n_past, m = targets.shape[0], positions.shape[1]
+    past, past_var = np.zeros((m, *targets.shape, 3)), np.zeros((m, *targets.shape))
+    centers, var, noise = np.empty((m, ahead.shape[0], 3)), np.empty((m, ahead.shape[0])), np.empty(m)
     line = np.empty((2, 3))
     for j in range(m):
         seen = positions[:, j]
-        for o in range(n_origins):
+        for o in range(n_past + 1):
             now = times[origins[o]]
             first = window_start(seen, origins[o], window)
             count, mean, about, squares = line_through(times, seen, first, origins[o], now, line)
             freedom = 3.0 * count - 6.0
-            variance = max(squares / max(freedom, 1.0), floor * floor)
-            noise[o, j] = variance
-            scale = 2.0 * variance * (freedom / (freedom - 2.0) if freedom > 4.0 else 2.0)
-            unknown = (speed_radii * radii[j]) ** 2 if about == 0.0 else 0.0
-            spread = 1.0 / about if about > 0.0 else 0.0
-            if o < n_origins - 1:
-                for h in range(targets.shape[1]):
-                    i = targets[o, h]
-                    if i >= 0:
-                        t = times[i] - now
-                        past[o, h, j] = line[0] + t * line[1]
-                        past_var[o, h, j] = scale * (1.0 / count + (t - mean) ** 2 * spread) + unknown * t * t
-            else:
-                for h in range(ahead.shape[0]):
+            noise[j] = max(squares / max(freedom, 1.0), floor * floor)
+            scale = 2.0 * noise[j] * (freedom / (freedom - 2.0) if freedom > 4.0 else 2.0)
+            speed = (speed_radii * radii[j]) ** 2 if about == 0.0 else scale / about
+            n_targets = targets.shape[1] if o < n_past else ahead.shape[0]
+            for h in range(n_targets):
+                if o == n_past:
                     t = ahead[h]
                     for k in range(3):
-                        centers[h, j, k] = line[0, k] + t * line[1, k]
-                    var[h, j] = scale * (1.0 / count + (t - mean) ** 2 * spread) + unknown * t * t
+                        centers[j, h, k] = line[0, k] + t * line[1, k]
+                    var[j, h] = scale / count + (t - mean) ** 2 * speed
+                elif targets[o, h] >= 0:
+                    t = times[targets[o, h]] - now
+                    past[j, o, h] = line[0] + t * line[1]
+                    past_var[j, o, h] = scale / count + (t - mean) ** 2 * speed
     return past, past_var, centers, var, noise
+
+
+@kernel
+def weigh(weights, history, noise, places, variances):
+    """Weighted sums (m, T, 3) of ``history`` (r, m, 3) by ``weights`` (T, r), variances of their errors (m, T)."""
+    for h in range(weights.shape[0]):
+        gain = 0.0
+        for i in range(weights.shape[1]):
+            gain += weights[h, i] * weights[h, i]
+        for j in range(history.shape[1]):
+            variances[j, h] = 2.0 * gain * noise[j]
+            for k in range(3):
+                places[j, h, k] = 0.0
+                for i in range(weights.shape[1]):
+                    places[j, h, k] += weights[h, i] * history[i, j, k]
 
 
 @kernel
@@ -125,42 +168,111 @@ def fastest(times, positions, gap):
         while k < i and math.isnan(positions[k, 0]):
             k += 1
         if k < i and not math.isnan(positions[i, 0]):
-            dx, dy, dz = positions[i] - positions[k]
-            top = max(top, math.sqrt(dx * dx + dy * dy + dz * dz) / (times[i] - times[k]))
+            square = 0.0
+            for c in range(3):
+                square += (positions[i, c] - positions[k, c]) ** 2
+            top = max(top, math.sqrt(square) / (times[i] - times[k]))
     return top
 
 
 @kernel
-def judge(times, positions, origins, targets, past, past_var, noise, ahead, var, gap):
+def growth(t, step, order):
+    """Error after ``t`` of a polynomial through points ``step`` apart, per unit of the lowest derivative left out."""
+    product = 1.0
+    for k in range(order):
+        product *= t + k * step
+    return product / (1.0, 1.0, 2.0, 6.0, 24.0)[order]
+
+
+@kernel
+def judge(
+    times, positions, radii, origins, targets, past, past_var, centers, var, noise, ahead, order, turn_radii, gap
+):
     """Bounds that hold in hindsight, and how wrong the model has been.
 
-    What a model's own variance does not explain of its past errors is put down to an acceleration that it does not
-    know; the error cannot outgrow the fastest that the obstacle was seen to go, though.
+    What a model's own variance does not explain of its past errors is put down to a lag, seen one step ahead, and to a
+    derivative of the motion that it leaves out, the ``order``-th. Where noise may hide that derivative from hindsight,
+    that of a plausible turn is added, whose radius is ``turn_radii`` obstacle radii (none if infinite). No error can
+    outgrow what the obstacle does at the fastest that it was seen to go, and what the prediction does.
 
     Returns:
-        Bounds, shape (T, m), [m], and scores, shape (m,), mean square of the past errors per second ahead.
+        Bounds, shape (m, T), [m], and scores, shape (m,), mean square of the past errors per second ahead.
     """
     m = positions.shape[1]
     bounds, scores = np.empty(var.shape), np.zeros(m)
+    step = (times[-1] - times[0]) / (times.shape[0] - 1) if times.shape[0] > 1 else 1.0
     for j in range(m):
-        excess, weight, pairs = 0.0, 0.0, 0
+        lag, excess, hidden, weight, pairs, judged = 0.0, 0.0, 0.0, 0.0, 0, 0
         for o in range(targets.shape[0]):
             for h in range(targets.shape[1]):
                 i = targets[o, h]
                 if i < 0 or math.isnan(positions[i, j, 0]):
                     continue
-                dx, dy, dz = positions[i, j] - past[o, h, j]
-                square = dx * dx + dy * dy + dz * dz
-                t2 = (times[i] - times[origins[o]]) ** 2
+                square = 0.0
+                for k in range(3):
+                    square += (positions[i, j, k] - past[j, o, h, k]) ** 2
+                t = times[i] - times[origins[o]]
+                expected = 1.5 * (past_var[j, o, h] + 2.0 * noise[j])
                 pairs += 1
-                scores[j] += square / t2
-                excess += (square - 1.5 * (past_var[o, h, j] + 2.0 * noise[-1, j])) / t2
-                weight += 0.25 * t2
-        acceleration2 = max(0.0, excess / weight) if weight > 0.0 else 0.0
+                scores[j] += square / (t * t)
+                if h == 0:
+                    lag += square - expected
+                    judged += 1
+                else:
+                    excess += (square - expected) / (t * t)
+                    hidden += (expected / (t * t)) ** 2
+                    weight += (growth(t, step, order) / t) ** 2
         scores[j] /= max(1, pairs)
-        speed2 = fastest(times, positions[:, j], gap) ** 2
+        speed = fastest(times, positions[:, j], gap)
+        few = 1.0 + 2.0 / max(1, judged)
+        lag = few * max(0.0, lag / max(1, judged))
+        missing = (speed**order * (1.0 / (turn_radii * radii[j])) ** (order - 1)) ** 2
+        if weight > 0.0:
+            missing = few * max(0.0, excess / weight) + min(missing, math.sqrt(hidden) / weight)
         for h in range(ahead.shape[0]):
-            t2 = ahead[h] * ahead[h]
-            own = var[h, j] + 0.25 * acceleration2 * t2 * t2
-            bounds[h, j] = math.sqrt(min(own, var[0, j] + speed2 * t2))
+            t = ahead[h]
+            own = var[j, h] + lag + missing * growth(t, step, order) ** 2
+            square = 0.0
+            for k in range(3):
+                square += (centers[j, h, k] - centers[j, 0, k]) ** 2
+            gone = 0.5 * (math.sqrt(square) + speed * t)
+            bounds[j, h] = math.sqrt(min(own, var[j, 0] + lag + gone * gone))
     return bounds, scores
+
+
+@kernel
+def blend(centers, bounds, scores):
+    """Forecasts of several models in one, each weighed by 1 / (its bound there * cube of its score).
+
+    Args:
+        centers: Per model, shape (m, T, 3), [m].
+        bounds: Per model, shape (m, T), [m].
+        scores: Per model, shape (m,), [m^2/s^2].
+
+    Returns:
+        Centres (m, T, 3) and bounds (m, T) [m]: the mean of the models' variances, and half of that between them.
+    """
+    out_centers, out_bounds = np.zeros(centers[0].shape), np.zeros(bounds[0].shape)
+    m, n_times = bounds[0].shape
+    weights = np.empty(len(centers))
+    for j in range(m):
+        least = math.inf
+        for k in range(len(centers)):
+            least = min(least, scores[k][j])
+        for h in range(n_times):
+            total = 0.0
+            for k in range(len(centers)):
+                share = (least + LEAST_SCORE) / (scores[k][j] + LEAST_SCORE)
+                weights[k] = share**3 / (bounds[k][j, h] + LEAST_BOUND_M)
+                total += weights[k]
+            for k in range(len(centers)):
+                weights[k] /= total
+                for c in range(3):
+                    out_centers[j, h, c] += weights[k] * centers[k][j, h, c]
+            for k in range(len(centers)):
+                apart = 0.0
+                for c in range(3):
+                    apart += (centers[k][j, h, c] - out_centers[j, h, c]) ** 2
+                out_bounds[j, h] += weights[k] * (bounds[k][j, h] ** 2 + 0.5 * apart)
+            out_bounds[j, h] = math.sqrt(out_bounds[j, h])
+    return out_centers, out_bounds

@@ -5,6 +5,7 @@ import functools
 import numpy as np
 from scipy.interpolate import interp1d
 
+from planners.prediction._kernels import weigh
 from planners.prediction.model import Extrapolation, Indices, Model
 from planners.prediction.observation import Observation, without_gaps
 from scenarios.arm import FloatArray
@@ -23,30 +24,30 @@ class CubicPredictor(Model):
     """
 
     reach_s = 12.0
+    leaves_out = 4
 
     def extrapolate(
         self, observation: Observation, origins: Indices, targets: Indices, ahead_s: FloatArray
     ) -> Extrapolation:
         """See ``Model.extrapolate``."""
         times, positions, _ = without_gaps(observation)
+        noise = _noise_variances(positions)
         m = positions.shape[1]
-        past, past_variances = np.zeros((*targets.shape, m, 3)), np.zeros((*targets.shape, m))
-        noise = np.empty((len(origins), m))
-        for o, last in enumerate(origins):
-            used = slice(max(0, last + 1 - HISTORY), last + 1)
-            now, history = times[last], positions[used]
-            noise[o] = _noise_variance(positions[: last + 1])
-            if o < len(targets):
-                there = targets[o] >= 0
-                weights = _weights((times[used] - now).tobytes(), (times[targets[o][there]] - now).tobytes())
-                past[o, there] = np.tensordot(weights, history, axes=1)
-                past_variances[o, there] = 2.0 * np.square(weights).sum(axis=1)[:, None] * noise[o]
-        weights = _weights((times[used] - now).tobytes(), ahead_s.tobytes())
-        variances = 2.0 * np.square(weights).sum(axis=1)[:, None] * noise[-1]
-        return Extrapolation(past, past_variances, np.tensordot(weights, history, axes=1), variances, noise)
+        past, past_variances = np.zeros((m, *targets.shape, 3)), np.zeros((m, *targets.shape))
+        for o, origin in enumerate(origins[:-1]):
+            reached = int(np.count_nonzero(targets[o] >= 0))  # targets ascend, those past the present come last
+            history = slice(max(0, origin + 1 - HISTORY), origin + 1)
+            weights = _weights(
+                (times[history] - times[origin]).tobytes(), (times[targets[o, :reached]] - times[origin]).tobytes()
+            )
+            weigh(weights, positions[history], noise, past[:, o], past_variances[:, o])
+        centers, variances = np.empty((m, len(ahead_s), 3)), np.empty((m, len(ahead_s)))
+        weights = _weights((times[-HISTORY:] - times[-1]).tobytes(), ahead_s.tobytes())
+        weigh(weights, positions[-HISTORY:], noise, centers, variances)
+        return Extrapolation(past, past_variances, centers, variances, noise)
 
 
-def _noise_variance(positions: FloatArray) -> FloatArray:
+def _noise_variances(positions: FloatArray) -> FloatArray:
     """Variance of the noise (m,) [m^2] by differences of the highest order up to 4 that the observations allow."""
     order = min(4, len(positions) - 1)
     gain = (1.0, 2.0, 6.0, 20.0, 70.0)[order]

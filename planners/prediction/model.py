@@ -18,6 +18,8 @@ NOISE_FLOOR_M = 1e-7
 """No sensor is better than this; it keeps weights finite where a model explains what was seen exactly."""
 SPEED_RADII = 1.0
 """Plausible speeds, where too little was seen to tell: about one radius of the obstacle per second."""
+TURN_RADII = 4.0
+"""Plausible turns, where noise hides them: a radius of some four times the obstacle's own."""
 HORIZONS = (1, 2, 3, 5, 8, 12, 20)
 """Steps ahead at which past forecasts are compared with what came."""
 BACK = (1, 2, 4, 8, 16, 32)
@@ -32,27 +34,39 @@ class Extrapolation(NamedTuple):
     """A model's forecasts, from earlier observations and from the present."""
 
     past_m: FloatArray
-    """Forecast centres from each past origin at each of its targets, shape (O - 1, H, m, 3), [m]."""
+    """Forecast centres from each past origin at each of its targets, shape (m, O - 1, H, 3), [m]."""
     past_variances: FloatArray
-    """What the model claims of their errors, shape (O - 1, H, m), [m^2]."""
+    """What the model claims of their errors, shape (m, O - 1, H), [m^2]."""
     centers_m: FloatArray
-    """Forecast centres from the present, shape (T, m, 3), [m]."""
+    """Forecast centres from the present, shape (m, T, 3), [m]."""
     variances: FloatArray
-    """What the model claims of their errors, shape (T, m), [m^2]."""
+    """What the model claims of their errors, shape (m, T), [m^2]."""
     noise_variances: FloatArray
-    """Variance of the noise of each coordinate, as estimated at each origin, shape (O, m), [m^2]."""
+    """Variance of the noise of each coordinate, shape (m,), [m^2]."""
 
 
 class Judged(NamedTuple):
-    """A forecast with bounds that hold in hindsight."""
+    """A model's forecast from the present in the light of its past errors."""
 
-    forecast: Forecast
+    centers_m: FloatArray
+    """Shape (m, T, 3), [m]."""
+    bounds_m: FloatArray
+    """One standard deviation of the error, shape (m, T), [m]."""
     scores: FloatArray
     """How wrong the model has been about each obstacle, shape (m,): mean square past error per second ahead."""
+
+    def forecast(self) -> Forecast:
+        """The same by time first."""
+        return Forecast(self.centers_m.transpose(1, 0, 2), self.bounds_m.T)
 
 
 class Model(Predictor):
     """A law of motion fitted to what was seen up to an origin: the present, or an earlier one for comparison."""
+
+    leaves_out: int
+    """Order of the lowest derivative of the motion that the model leaves out."""
+    knows_turns: bool = False
+    """Whether the model's own variance covers a turn that noise hides."""
 
     @abstractmethod
     def extrapolate(
@@ -69,16 +83,29 @@ class Model(Predictor):
 
     def judged(self, observation: Observation, times_s: FloatArray) -> Judged:
         """Forecast, with bounds widened to what hindsight shows."""
-        times, positions, _ = observation
+        times = observation.times_s
         origins, targets = _comparisons(len(times))
         ahead = times_s - times[-1]
         past, past_var, centers, var, noise = self.extrapolate(observation, origins, targets, ahead)
-        bounds, scores = judge(times, positions, origins, targets, past, past_var, noise, ahead, var, GAP)
-        return Judged(Forecast(centers, bounds), scores)
+        bounds, scores = judge(
+            *observation,
+            origins,
+            targets,
+            past,
+            past_var,
+            centers,
+            var,
+            noise,
+            ahead,
+            self.leaves_out,
+            np.inf if self.knows_turns else TURN_RADII,
+            GAP,
+        )
+        return Judged(centers, bounds, scores)
 
     def forecast(self, observation: Observation, times_s: FloatArray) -> Forecast:
         """See ``Predictor.forecast``."""
-        return self.judged(observation, times_s).forecast
+        return self.judged(observation, times_s).forecast()
 
 
 @functools.lru_cache(maxsize=512)

@@ -1,9 +1,8 @@
-"""Several models; each obstacle is predicted by the one that would have been best for it so far."""
+"""Several models at once; hindsight says how much each counts for each obstacle."""
 
 from collections.abc import Sequence
 
-import numpy as np
-
+from planners.prediction._kernels import blend
 from planners.prediction.model import Model
 from planners.prediction.observation import Observation
 from planners.prediction.predictor import Forecast, Predictor
@@ -11,18 +10,19 @@ from scenarios.arm import FloatArray
 
 
 class PortfolioPredictor(Predictor):
-    """Picks a model per obstacle by its error in hindsight: past observations predicted from still earlier ones."""
+    """Leaves each obstacle to the models that would have predicted it best so far.
+
+    Every model predicts past observations from still earlier ones. Its weight falls with the sixth power of the error
+    that it made there, which comes close to a choice of the best, and with its error bound: a model that is sharp for
+    some seconds gives way to a calmer one further ahead. Where models of similar merit differ, the bound grows.
+    """
 
     def __init__(self, models: Sequence[Model]) -> None:
-        """Choose among ``models``; on a tie the earlier one is taken."""
+        """Weigh ``models``."""
         self._models = models
 
     def forecast(self, observation: Observation, times_s: FloatArray) -> Forecast:
         """See ``Predictor.forecast``."""
-        judged = [model.judged(observation, times_s) for model in self._models]
-        best = np.argmin([one.scores for one in judged], axis=0)
-        centers, bounds = judged[0].forecast
-        for j in np.flatnonzero(best):
-            centers[:, j] = judged[best[j]].forecast.centers_m[:, j]
-            bounds[:, j] = judged[best[j]].forecast.bounds_m[:, j]
-        return Forecast(centers, bounds)
+        centers, bounds, scores = zip(*(model.judged(observation, times_s) for model in self._models), strict=True)
+        mean, spread = blend(centers, bounds, scores)
+        return Forecast(mean.transpose(1, 0, 2), spread.T)

@@ -12,6 +12,8 @@ WINDOW = 5
 class VelocityPredictor(Model):
     """The least-squares line through the last five observations that were not lost."""
 
+    leaves_out = 2
+
     def extrapolate(
         self, observation: Observation, origins: Indices, targets: Indices, ahead_s: FloatArray
     ) -> Extrapolation:

@@ -1,12 +1,9 @@
 """Circular arc: a constant turn at constant speed, fitted to everything seen."""
 
 from planners.prediction.arc._kernels import follow
-from planners.prediction.model import NOISE_FLOOR_M, SPEED_RADII, Extrapolation, Indices, Model
+from planners.prediction.model import NOISE_FLOOR_M, SPEED_RADII, TURN_RADII, Extrapolation, Indices, Model
 from planners.prediction.observation import Observation
 from scenarios.arm import FloatArray
-
-TURN_RADII = 4.0
-"""Plausible turns: a radius of some four times the obstacle's own."""
 
 
 class ArcPredictor(Model):
@@ -17,13 +14,12 @@ class ArcPredictor(Model):
     the residuals. The error bound is the posterior's standard deviation, widened by hindsight.
     """
 
-    def __init__(self, window: int = 1_000_000) -> None:
-        """Use the last ``window`` observations that were not lost."""
-        self._window = window
+    leaves_out = 2
+    knows_turns = True
 
     def extrapolate(
         self, observation: Observation, origins: Indices, targets: Indices, ahead_s: FloatArray
     ) -> Extrapolation:
         """See ``Model.extrapolate``."""
         scales = (NOISE_FLOOR_M, SPEED_RADII, TURN_RADII)
-        return Extrapolation(*follow(*observation, origins, targets, ahead_s, self._window, *scales))
+        return Extrapolation(*follow(*observation, origins, targets, ahead_s, *scales))

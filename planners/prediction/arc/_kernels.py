@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from planners.prediction._kernels import invert, line_through, window_start
+from planners.prediction._kernels import invert, line_through, solve
 from scenarios.kernels.jit import kernel
 
 STEPS = 5
@@ -24,21 +24,25 @@ SMALL_RAD = 1e-2
 def frame_of(v, c, axes):
     """Unit vectors along ``v``, ``c`` and across into the rows of ``axes`` (3, 3); returns speed and curvature."""
     speed = math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
-    if speed > 0.0:
-        axes[0] = v / speed
-    else:
-        axes[0] = np.array((1.0, 0.0, 0.0))
+    for k in range(3):
+        axes[0, k] = v[k] / speed if speed > 0.0 else (1.0 if k == 0 else 0.0)
     along = c[0] * axes[0, 0] + c[1] * axes[0, 1] + c[2] * axes[0, 2]
-    axes[1] = c - along * axes[0]
-    curvature = math.sqrt(axes[1, 0] ** 2 + axes[1, 1] ** 2 + axes[1, 2] ** 2)
-    if curvature > 1e-9:
-        axes[1] /= curvature
-    else:  # straight: any direction across will do
-        curvature = 0.0
-        least = np.argmin(np.abs(axes[0]))
-        axes[1] = -axes[0, least] * axes[0]
-        axes[1, least] += 1.0
-        axes[1] /= math.sqrt(axes[1, 0] ** 2 + axes[1, 1] ** 2 + axes[1, 2] ** 2)
+    curvature = 0.0
+    for k in range(3):
+        axes[1, k] = c[k] - along * axes[0, k]
+        curvature += axes[1, k] * axes[1, k]
+    curvature = math.sqrt(curvature)
+    length = curvature
+    if curvature < 1e-9:  # straight: any direction across will do, best from the axis that ``v`` is least along
+        curvature, least = 0.0, 0
+        for k in range(1, 3):
+            if abs(axes[0, k]) < abs(axes[0, least]):
+                least = k
+        for k in range(3):
+            axes[1, k] = (1.0 if k == least else 0.0) - axes[0, least] * axes[0, k]
+        length = math.sqrt(1.0 - axes[0, least] ** 2)
+    for k in range(3):
+        axes[1, k] /= length
     axes[2, 0] = axes[0, 1] * axes[1, 2] - axes[0, 2] * axes[1, 1]
     axes[2, 1] = axes[0, 2] * axes[1, 0] - axes[0, 0] * axes[1, 2]
     axes[2, 2] = axes[0, 0] * axes[1, 1] - axes[0, 1] * axes[1, 0]
@@ -60,33 +64,41 @@ def turn(t, speed, curvature, sine, cosine):
         a, b = 1.0 - x2 / 6.0 + x2 * x2 / 120.0, x * (0.5 - x2 / 24.0)
         c, d, e = x * (x2 / 30.0 - 1.0 / 3.0), 0.5 - x2 / 8.0 + x2 * x2 / 144.0, 0.5 - x2 / 24.0 + x2 * x2 / 720.0
     else:
-        a, b = sine / x, (1.0 - cosine) / x
-        c, d, e = (cosine - a) / x, (sine - b) / x, b / x
+        over = 1.0 / x
+        a, b = sine * over, (1.0 - cosine) * over
+        c, d, e = (cosine - a) * over, (sine - b) * over, b * over
     way = speed * t
     return way * a, way * b, a, b, way * way * c, way * way * d, way * way * e
 
 
 @kernel
-def normal_equations(times, positions, first, last, state, axes, inside, across):
-    """Matrix (its lower half) and right side of ``inside`` (5, 6) and ``across`` (3, 4) from observations first..last.
+def add_observations(times, positions, first, last, now, state, axes, speed, curvature, inside, across):
+    """Add first..last to the normal equations, matrix (lower half) and right side, of a step from ``state`` at ``now``.
 
-    The unknowns are, in the plane, two components of position, two of velocity and curvature; across it position,
-    velocity and curvature. Returns the sum of squared residuals and the number of observations that were not lost.
+    The unknowns of ``inside`` (5, 6) are, in the turn's plane, two components of position, two of velocity, and
+    curvature; those of ``across`` (3, 4) are position, velocity and curvature across it.
+
+    Returns:
+        The sum of squared residuals and the number of observations that were not lost.
     """
-    speed, curvature = frame_of(state[1], state[2], axes)
     rate = speed * curvature
     squares, seen = 0.0, 0
-    r0 = r1 = r2 = r3 = r4 = 0.0
-    h20 = h21 = h22 = h30 = h31 = h32 = h33 = h40 = h41 = h42 = h43 = h44 = 0.0
-    s0 = s1 = s2 = g10 = g11 = g20 = g21 = g22 = 0.0
-    t, step, sine, cosine, step_sine, step_cosine = 0.0, 0.0, 0.0, 1.0, 0.0, 1.0
-    for i in range(last, first - 1, -1):
-        if i < last:  # the angle's sine and cosine from those before it; times are mostly one step apart
-            if times[i] - times[i + 1] != step:
-                step = times[i] - times[i + 1]
+    count = inside[0, 0]
+    h20, h21, h22 = inside[2, 0], inside[2, 1], inside[2, 2]
+    h30, h31, h32, h33 = inside[3, 0], inside[3, 1], inside[3, 2], inside[3, 3]
+    h40, h41, h42, h43, h44 = inside[4, 0], inside[4, 1], inside[4, 2], inside[4, 3], inside[4, 4]
+    r0, r1, r2, r3, r4 = inside[0, 5], inside[1, 5], inside[2, 5], inside[3, 5], inside[4, 5]
+    g10, g11, g20, g21, g22 = across[1, 0], across[1, 1], across[2, 0], across[2, 1], across[2, 2]
+    s0, s1, s2 = across[0, 3], across[1, 3], across[2, 3]
+    t, step, step_sine, step_cosine = times[first] - now, 0.0, 0.0, 1.0
+    sine, cosine = math.sin(rate * t), math.cos(rate * t)
+    for i in range(first, last + 1):
+        if i > first:  # the angle's sine and cosine from those before it; times are mostly one step apart
+            if times[i] - times[i - 1] != step:
+                step = times[i] - times[i - 1]
                 step_sine, step_cosine = math.sin(rate * step), math.cos(rate * step)
             sine, cosine = sine * step_cosine + cosine * step_sine, cosine * step_cosine - sine * step_sine
-            t = times[i] - times[last]
+            t = times[i] - now
         if math.isnan(positions[i, 0]):
             continue
         seen += 1
@@ -104,13 +116,13 @@ def normal_equations(times, positions, first, last, state, axes, inside, across)
         r3, r4 = r3 + q0 * along + q1 * inward, r4 + c * along + d * inward
         g10, g11, g20, g21, g22 = g10 + q1, g11 + q1 * q1, g20 + e, g21 + q1 * e, g22 + e * e
         s0, s1, s2 = s0 + off, s1 + q1 * off, s2 + e * off
-    inside[0, 0] = inside[1, 1] = seen
-    inside[1, 0] = 0.0
+    inside[0, 0], inside[1, 0], inside[1, 1] = count + seen, 0.0, count + seen
     inside[2, 0], inside[2, 1], inside[2, 2] = h20, h21, h22
     inside[3, 0], inside[3, 1], inside[3, 2], inside[3, 3] = h30, h31, h32, h33
     inside[4, 0], inside[4, 1], inside[4, 2], inside[4, 3], inside[4, 4] = h40, h41, h42, h43, h44
     inside[0, 5], inside[1, 5], inside[2, 5], inside[3, 5], inside[4, 5] = r0, r1, r2, r3, r4
-    across[0, 0], across[1, 0], across[1, 1], across[2, 0], across[2, 1], across[2, 2] = seen, g10, g11, g20, g21, g22
+    across[0, 0], across[1, 0], across[1, 1] = count + seen, g10, g11
+    across[2, 0], across[2, 1], across[2, 2] = g20, g21, g22
     across[0, 3], across[1, 3], across[2, 3] = s0, s1, s2
     return squares, seen
 
@@ -155,51 +167,37 @@ def advance(state, t):
 
 
 @kernel
-def refine(times, positions, first, last, floor, speed_scale, curvature_scale, state, inside, across):
-    """Fit ``state`` (3, 3), at ``times[last]``, to the observations first..last by damped Gauss-Newton steps.
+def refine(times, positions, last, epoch, floor, speed_scale, curvature_scale, state):
+    """Fit ``state`` (3, 3) at ``epoch`` to the observations up to ``last`` by damped Gauss-Newton steps.
 
-    The noise is estimated from the residuals as the fit goes on, never below ``floor`` [m]. Leaves the unscaled
-    covariances of the errors in the plane in ``inside[:, :5]`` and across it in ``across[:, :3]``.
+    The noise is estimated from the residuals as the fit goes on, never below ``floor`` [m].
 
     Returns:
         The noise's variance per coordinate and the degrees of freedom it was estimated from.
     """
     axes, before = np.empty((3, 3)), state.copy()
-    kept_inside, kept_across = np.empty((5, 6)), np.empty((3, 4))
-    d, e = np.zeros(5), np.zeros(3)
+    inside, across, kept_inside, kept_across = np.empty((5, 6)), np.empty((3, 4)), np.empty((5, 6)), np.empty((3, 4))
+    factor, d, e = np.empty((5, 5)), np.empty(5), np.empty(3)
     variance, freedom, damping, kept_squares, kept_prior = 0.0, 1.0, 0.0, math.inf, 0.0
     for step in range(STEPS):
-        squares, seen = normal_equations(times, positions, first, last, state, axes, inside, across)
         speed, curvature = frame_of(state[1], state[2], axes)
+        inside[:], across[:] = 0.0, 0.0
+        squares, seen = add_observations(
+            times, positions, 0, last, epoch, state, axes, speed, curvature, inside, across
+        )
         prior = (speed / speed_scale) ** 2 + (curvature / curvature_scale) ** 2
         if step == 0 or squares + variance * prior <= kept_squares + variance * kept_prior:
             before[:], kept_inside[:], kept_across[:] = state, inside, across
             kept_squares, kept_prior = squares, prior
             freedom = max(1.0, 3.0 * seen - 8.0)
             variance = max(squares / freedom, floor * floor)
-            damping = 0.1 * damping if damping > 1e-6 else 0.0
+            damping = 0.1 * damping if damping > 1e-3 else 0.0
         else:  # a step too far
             state[:], inside[:], across[:] = before, kept_inside, kept_across
             speed, curvature = frame_of(state[1], state[2], axes)
-            damping = max(10.0 * damping, 1e-3)
+            damping = max(10.0 * damping, 0.1)
         weigh_prior(variance, speed, curvature, speed_scale, curvature_scale, inside, across)
-        for a in range(5):
-            inside[a, a] *= 1.0 + damping
-        for a in range(3):
-            across[a, a] *= 1.0 + damping
-        invert(inside, 5)
-        invert(across, 3)
-        gain = 0.0
-        for a in range(5):
-            d[a] = 0.0
-            for b in range(5):
-                d[a] += inside[a, b] * inside[b, 5]
-            gain += d[a] * inside[a, 5]
-        for a in range(3):
-            e[a] = 0.0
-            for b in range(3):
-                e[a] += across[a, b] * across[b, 3]
-            gain += e[a] * across[a, 3]
+        gain = solve(inside, 5, damping, factor, d) + solve(across, 3, damping, factor, e)
         moved(before, axes, speed, curvature, d, e, state)
         if gain < ENOUGH * variance:  # a step this small needs no second look
             break
@@ -207,22 +205,21 @@ def refine(times, positions, first, last, floor, speed_scale, curvature_scale, s
 
 
 @kernel
-def start_state(times, positions, first, last, floor, curvature_scale, state):
-    """A first guess at ``times[last]``: a parabola through first..last; a line where noise explains its bend."""
+def start_state(times, positions, last, epoch, floor, curvature_scale, state):
+    """A first guess at ``epoch``: a parabola through what was seen up to ``last``; a line where noise explains it."""
     fit = np.zeros((3, 6))
-    now = times[last]
     seen = 0
-    for i in range(first, last + 1):
+    for i in range(last + 1):
         if math.isnan(positions[i, 0]):
             continue
         seen += 1
-        t = times[i] - now
+        t = times[i] - epoch
         for a in range(3):
             for b in range(a + 1):
                 fit[a, b] += t ** (a + b)
             for k in range(3):
                 fit[a, 3 + k] += t**a * positions[i, k]
-    line_through(times, positions, first, last, now, state)
+    line_through(times, positions, 0, last, epoch, state)
     state[2] = 0.0
     if seen < 4:
         return
@@ -233,9 +230,9 @@ def start_state(times, positions, first, last, floor, curvature_scale, state):
             for k in range(3):
                 c[a, k] += fit[a, b] * fit[b, 3 + k]
     squares = 0.0
-    for i in range(first, last + 1):
+    for i in range(last + 1):
         if not math.isnan(positions[i, 0]):
-            t = times[i] - now
+            t = times[i] - epoch
             for k in range(3):
                 squares += (positions[i, k] - c[0, k] - c[1, k] * t - c[2, k] * t * t) ** 2
     variance = max(squares / (3.0 * seen - 9.0), floor * floor)
@@ -251,14 +248,12 @@ def start_state(times, positions, first, last, floor, curvature_scale, state):
 
 
 @kernel
-def spread(t, speed, curvature, inside, across):
+def spread(t, sine, cosine, speed, curvature, inside, across):
     """The place after ``t`` along and towards the centre, and the variance of its error per unit of noise.
 
     That variance is the mean of the error's mean square length and its variance in the worst direction: twice its root
     holds 95 % of normal errors whether they spread in one, two or three directions.
     """
-    angle = curvature * speed * t
-    sine, cosine = math.sin(angle), math.cos(angle)
     u, w, a, b, c, d, e = turn(t, speed, curvature, sine, cosine)
     p0, p1, q0, q1 = t * cosine, t * sine, -t * b, t * a
     i = inside
@@ -276,8 +271,62 @@ def spread(t, speed, curvature, inside, across):
 
 
 @kernel
-def follow(times, positions, radii, origins, targets, ahead, window, floor, speed_radii, turn_radii):
+def fit(times, positions, floor, speed_scale, curvature_scale, state):
+    """Fit ``state`` (3, 3) to all observations, to the first six first: a long fit needs a near start.
+
+    Returns:
+        The noise's variance per coordinate, its degrees of freedom, and the state's epoch: the middle of what is
+        fitted, where the unknowns are least entangled.
+    """
+    last = min(5, times.shape[0] - 1)
+    epoch = 0.5 * (times[0] + times[last])
+    start_state(times, positions, last, epoch, floor, curvature_scale, state)
+    while True:
+        variance, freedom = refine(times, positions, last, epoch, floor, speed_scale, curvature_scale, state)
+        if last == times.shape[0] - 1:
+            return variance, freedom, epoch
+        last = min(2 * last, times.shape[0] - 1)
+        middle = 0.5 * (times[0] + times[last])
+        advance(state, middle - epoch)
+        epoch = middle
+
+
+@kernel
+def look_back(times, targets, epoch, state, inside, across, places, variances):
+    """Where ``state`` (3, 3) was at ``targets``, observations (H,) or -1 for none, into (H, 3); variances into (H,)."""
+    axes = np.empty((3, 3))
+    speed, curvature = frame_of(state[1], state[2], axes)
+    for h in range(targets.shape[0]):
+        if targets[h] >= 0:
+            t = times[targets[h]] - epoch
+            angle = curvature * speed * t
+            u, w, variances[h] = spread(t, math.sin(angle), math.cos(angle), speed, curvature, inside, across)
+            for k in range(3):
+                places[h, k] = state[0, k] + u * axes[0, k] + w * axes[1, k]
+
+
+@kernel
+def look_ahead(start, ahead, state, inside, across, places, variances):
+    """Where ``state`` (3, 3) will be at ``start`` after its epoch and ``ahead`` (T,) later: (T, 3); variances (T,)."""
+    axes = np.empty((3, 3))
+    speed, curvature = frame_of(state[1], state[2], axes)
+    sine, cosine, step, step_sine, step_cosine = 0.0, 1.0, 0.0, 0.0, 1.0
+    for h in range(ahead.shape[0]):
+        change = ahead[h] - ahead[h - 1] if h > 0 else start + ahead[0]
+        if change != step:
+            step = change
+            step_sine, step_cosine = math.sin(curvature * speed * step), math.cos(curvature * speed * step)
+        sine, cosine = sine * step_cosine + cosine * step_sine, cosine * step_cosine - sine * step_sine
+        u, w, variances[h] = spread(start + ahead[h], sine, cosine, speed, curvature, inside, across)
+        for k in range(3):
+            places[h, k] = state[0, k] + u * axes[0, k] + w * axes[1, k]
+
+
+@kernel
+def follow(times, positions, radii, origins, targets, ahead, floor, speed_radii, turn_radii):
     """Constant turns fitted to what was seen up to each of ``origins``; the last origin is the present.
+
+    The fit to everything is a Gauss-Newton step away from the fits to less, whose normal equations are partial sums.
 
     Args:
         times: Observation times, shape (r,), [s].
@@ -286,52 +335,43 @@ def follow(times, positions, radii, origins, targets, ahead, window, floor, spee
         origins: Ascending indices of observations to forecast from, shape (O,).
         targets: Observations to forecast from each origin but the last, shape (O - 1, H); -1 for none.
         ahead: Times to forecast from the present, shape (T,), [s] after it.
-        window: Number of observations used, counted back from an origin.
         floor: Least noise [m].
         speed_radii: Scale of plausible speeds, in the obstacle's radius per second.
         turn_radii: Scale of plausible turns: their radius in the obstacle's.
 
     Returns:
-        Past forecasts (O - 1, H, m, 3) and their variances, forecasts (T, m, 3) and their variances (T, m), and the
-        noise's variance at each origin (O, m).
+        Past forecasts (m, O - 1, H, 3) and their variances, forecasts (m, T, 3) and their variances (m, T), and the
+        noise's variance (m,).
     """
-    n_origins, m = origins.shape[0], positions.shape[1]
-    past, past_var = np.zeros((*targets.shape, m, 3)), np.zeros((*targets.shape, m))
-    centers, var = np.empty((ahead.shape[0], m, 3)), np.empty((ahead.shape[0], m))
-    noise = np.empty((n_origins, m))
-    state, axes = np.empty((3, 3)), np.empty((3, 3))
-    inside, across = np.empty((5, 6)), np.empty((3, 4))
+    n_past, m = targets.shape[0], positions.shape[1]
+    past, past_var = np.zeros((m, *targets.shape, 3)), np.zeros((m, *targets.shape))
+    centers, var, noise = np.empty((m, ahead.shape[0], 3)), np.empty((m, ahead.shape[0])), np.empty(m)
+    state, then, axes = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
+    inside, across, sum_inside, sum_across = np.empty((5, 6)), np.empty((3, 4)), np.empty((5, 6)), np.empty((3, 4))
+    factor, d, e = np.empty((5, 5)), np.empty(5), np.empty(3)
     for j in range(m):
         seen = positions[:, j]
-        speed_scale, curvature_scale = speed_radii * radii[j], 1.0 / (turn_radii * radii[j])
-        last = min(5, origins[0])
-        first = window_start(seen, last, window)
-        start_state(times, seen, first, last, floor, curvature_scale, state)
-        for o in range(n_origins):
-            while True:  # the long fit needs a near start
-                target = min(max(2 * last, last + 4), origins[o]) if last < origins[o] else last
-                advance(state, times[target] - times[last])
-                last = target
-                first = window_start(seen, last, window)
-                variance, freedom = refine(
-                    times, seen, first, last, floor, speed_scale, curvature_scale, state, inside, across
-                )
-                if last == origins[o]:
-                    break
-            noise[o, j] = variance
-            scale = variance * freedom / (freedom - 2.0) if freedom > 4.0 else 2.0 * variance
-            speed, curvature = frame_of(state[1], state[2], axes)
-            if o < n_origins - 1:
-                for h in range(targets.shape[1]):
-                    i = targets[o, h]
-                    if i >= 0:
-                        u, w, v = spread(times[i] - times[last], speed, curvature, inside, across)
-                        past[o, h, j] = state[0] + u * axes[0] + w * axes[1]
-                        past_var[o, h, j] = scale * v
+        scales = (speed_radii * radii[j], 1.0 / (turn_radii * radii[j]))
+        noise[j], freedom, epoch = fit(times, seen, floor, *scales, state)
+        speed, curvature = frame_of(state[1], state[2], axes)
+        sum_inside[:], sum_across[:] = 0.0, 0.0
+        for o in range(n_past + 1):
+            first = origins[o - 1] + 1 if o > 0 else 0
+            add_observations(
+                times, seen, first, origins[o], epoch, state, axes, speed, curvature, sum_inside, sum_across
+            )
+            inside[:], across[:] = sum_inside, sum_across
+            weigh_prior(noise[j], speed, curvature, *scales, inside, across)
+            solve(inside, 5, 0.0, factor, d)
+            solve(across, 3, 0.0, factor, e)
+            invert(inside, 5)
+            invert(across, 3)
+            if o < n_past:
+                moved(state, axes, speed, curvature, d, e, then)
+                look_back(times, targets[o], epoch, then, inside, across, past[j, o], past_var[j, o])
             else:
-                for h in range(ahead.shape[0]):
-                    u, w, v = spread(ahead[h], speed, curvature, inside, across)
-                    for k in range(3):
-                        centers[h, j, k] = state[0, k] + u * axes[0, k] + w * axes[1, k]
-                    var[h, j] = scale * v
+                look_ahead(times[-1] - epoch, ahead, state, inside, across, centers[j], var[j])
+        scale = noise[j] * (freedom / (freedom - 2.0) if freedom > 4.0 else 2.0)  # noise known from few residuals
+        past_var[j] *= scale
+        var[j] *= scale
     return past, past_var, centers, var, noise

@@ -1,0 +1,159 @@
+"""Kalman filters of constant velocity and of constant acceleration, averaged by how well they foretold what came.
+
+All coordinates share one covariance, written in units of the noise's variance: the gains then depend on the ratio of
+process to measurement noise alone, and the noise's variance follows from the innovations.
+"""
+
+import math
+
+import numpy as np
+
+from scenarios.kernels.jit import kernel
+
+UNKNOWN = 1e8
+"""Variance of velocity and acceleration before anything was seen, in units of the noise's: as good as infinite."""
+SKIPPED = 3
+"""Observations that a filter of three states needs to begin with; they do not count for or against any."""
+
+
+@kernel
+def run(times, positions, first, origins, order, ratio, floor, states, covariances, evidence, variances):
+    """One filter over the observations first..; what it held at each of ``origins`` (O,) into the last arguments.
+
+    ``order`` is 2 for constant velocity, 3 for constant acceleration; ``ratio`` the density of the white noise that
+    disturbs it over the variance of the measurements. Fills states (O, 3, 3), covariances (O, 6) in units of the
+    noise's variance, logarithms of the evidence (O,) and the noise's variance (O,).
+    """
+    x = np.zeros((3, 3))
+    p00, p01, p02, p11, p12, p22 = 1.0, 0.0, 0.0, UNKNOWN, 0.0, UNKNOWN if order == 3 else 0.0
+    q2, q3 = (ratio, 0.0) if order == 2 else (0.0, ratio)
+    seen, squares, logs, o = 0, 0.0, 0.0, 0
+    for i in range(first, origins[-1] + 1):
+        t = times[i] - times[i - 1] if i > first else 0.0
+        if seen > 0:
+            for k in range(3):
+                x[0, k] += t * x[1, k] + 0.5 * t * t * x[2, k]
+                x[1, k] += t * x[2, k]
+            half = 0.5 * t * t
+            b0, b1, b2 = p00 + t * p01 + half * p02, p01 + t * p11 + half * p12, p02 + t * p12 + half * p22
+            c1, c2 = p11 + t * p12, p12 + t * p22
+            p00 = b0 + t * b1 + half * b2 + q2 * t**3 / 3.0 + q3 * t**5 / 20.0
+            p01 = b1 + t * b2 + q2 * half + q3 * t**4 / 8.0
+            p02 = b2 + q3 * t**3 / 6.0
+            p11 = c1 + t * c2 + q2 * t + q3 * t**3 / 3.0
+            p12, p22 = c2 + q3 * half, p22 + q3 * t
+        if not math.isnan(positions[i, 0]):
+            seen += 1
+            if seen == 1:
+                x[0] = positions[i]
+            else:
+                s = p00 + 1.0
+                g0, g1, g2 = p00 / s, p01 / s, p02 / s
+                square = 0.0
+                for k in range(3):
+                    surprise = positions[i, k] - x[0, k]
+                    square += surprise * surprise
+                    x[0, k] += g0 * surprise
+                    x[1, k] += g1 * surprise
+                    x[2, k] += g2 * surprise
+                p11, p12, p22 = p11 - g1 * p01, p12 - g1 * p02, p22 - g2 * p02
+                p00, p01, p02 = g0, g1, g2
+                if seen > SKIPPED:
+                    squares += square / s
+                    logs += math.log(s)
+        if i == origins[o]:
+            count = max(1, seen - SKIPPED)
+            variances[o] = max(squares / (3.0 * count), floor * floor)
+            evidence[o] = -1.5 * (logs + count * math.log(variances[o]))
+            states[o] = x
+            covariances[o, 0], covariances[o, 1], covariances[o, 2] = p00, p01, p02
+            covariances[o, 3], covariances[o, 4], covariances[o, 5] = p11, p12, p22
+            o += 1
+
+
+@kernel
+def average(orders, ratios, states, covariances, evidence, variances, state, covariance):
+    """Mean ``state`` (3, 3) and ``covariance`` (6,) of filters (F,) weighted by their evidence.
+
+    Returns:
+        The mean variance of the noise, and the mean densities that disturb velocity and acceleration.
+    """
+    state[:], covariance[:] = 0.0, 0.0
+    noise, q2, q3, total, best = 0.0, 0.0, 0.0, 0.0, evidence.max()
+    for f in range(evidence.shape[0]):
+        weight = math.exp(evidence[f] - best)
+        total += weight
+        state += weight * states[f]
+        covariance += weight * variances[f] * covariances[f]
+        noise += weight * variances[f]
+        if orders[f] == 2:
+            q2 += weight * ratios[f] * variances[f]
+        else:
+            q3 += weight * ratios[f] * variances[f]
+    state /= total
+    covariance /= total
+    for f in range(evidence.shape[0]):  # where they differ, none of them knows
+        weight = math.exp(evidence[f] - best) / (3.0 * total)
+        for k in range(3):
+            dp, dv, da = states[f, 0, k] - state[0, k], states[f, 1, k] - state[1, k], states[f, 2, k] - state[2, k]
+            covariance[0] += weight * dp * dp
+            covariance[1] += weight * dp * dv
+            covariance[2] += weight * dp * da
+            covariance[3] += weight * dv * dv
+            covariance[4] += weight * dv * da
+            covariance[5] += weight * da * da
+    return noise / total, q2 / total, q3 / total
+
+
+@kernel
+def extrapolated(t, state, covariance, q2, q3, place):
+    """The place (3,) after ``t``; returns its variance, that of an error which is alike in all directions."""
+    half = 0.5 * t * t
+    for k in range(3):
+        place[k] = state[0, k] + t * state[1, k] + half * state[2, k]
+    c = covariance
+    spread = c[0] + 2.0 * t * c[1] + 2.0 * half * c[2] + t * t * c[3] + 2.0 * t * half * c[4] + half * half * c[5]
+    return 2.0 * (spread + q2 * t**3 / 3.0 + q3 * t**5 / 20.0)
+
+
+@kernel
+def follow(times, positions, origins, targets, ahead, orders, ratios, history, floor):
+    """Filters with the given ``orders`` and ``ratios`` (F,) over the last ``history`` observations, averaged.
+
+    The other arguments and the results are those of ``arc._kernels.follow``.
+    """
+    n_origins, m, n_filters = origins.shape[0], positions.shape[1], orders.shape[0]
+    past, past_var = np.zeros((m, *targets.shape, 3)), np.zeros((m, *targets.shape))
+    centers, var, noise = np.empty((m, ahead.shape[0], 3)), np.empty((m, ahead.shape[0])), np.empty(m)
+    states, covariances = np.empty((n_filters, n_origins, 3, 3)), np.empty((n_filters, n_origins, 6))
+    evidence, variances = np.empty((n_filters, n_origins)), np.empty((n_filters, n_origins))
+    state, covariance = np.empty((3, 3)), np.empty(6)
+    first = max(0, times.shape[0] - history)
+    for j in range(m):
+        for f in range(n_filters):
+            run(
+                times,
+                positions[:, j],
+                first,
+                origins,
+                orders[f],
+                ratios[f],
+                floor,
+                states[f],
+                covariances[f],
+                evidence[f],
+                variances[f],
+            )
+        for o in range(n_origins):
+            noise[j], q2, q3 = average(
+                orders, ratios, states[:, o], covariances[:, o], evidence[:, o], variances[:, o], state, covariance
+            )
+            if o < n_origins - 1:
+                for h in range(targets.shape[1]):
+                    if targets[o, h] >= 0:
+                        t = times[targets[o, h]] - times[origins[o]]
+                        past_var[j, o, h] = extrapolated(t, state, covariance, q2, q3, past[j, o, h])
+            else:
+                for h in range(ahead.shape[0]):
+                    var[j, h] = extrapolated(ahead[h], state, covariance, q2, q3, centers[j, h])
+    return past, past_var, centers, var, noise
