@@ -164,7 +164,7 @@ class TipGoal(ob.GoalSampleableRegion):
 
     def sampleGoal(self, state: ob.State) -> None:
         """Write a goal configuration at an arrival time drawn between its earliest and the planning horizon."""
-        configurations, earliest_s = self._reachable
+        configurations, earliest_s = self.reachable
         k = int(self._rng.integers(len(configurations)))
         write_state(state, configurations[k], self._rng.uniform(earliest_s[k], self._latest_s))
 
@@ -174,10 +174,10 @@ class TipGoal(ob.GoalSampleableRegion):
 
     def couldSample(self) -> bool:
         """Whether a goal configuration is known."""
-        return len(self._reachable[0]) > 0
+        return len(self.reachable[0]) > 0
 
     @functools.cached_property
-    def _reachable(self) -> tuple[FloatArray, FloatArray]:
+    def reachable(self) -> tuple[FloatArray, FloatArray]:
         """Goal configurations (K, dof) [rad] that can be reached in time, and how early each can (K,) [s].
 
         Found out when first asked: many planners never sample the goal.

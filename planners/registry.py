@@ -17,6 +17,7 @@ from planners.continuous.planner import (
 from planners.heuristics import HeuristicSettings, PurgingPlanner, WaitingPlanner
 from planners.potential_field import PotentialFieldPlanner, PotentialFieldSettings
 from planners.problem import SpaceTimeProblem
+from planners.roadmap import PRMPlanner, PRMSettings
 from planners.sampling import RRTSettings, build_rrt
 from planners.temporal.planner import TemporalPlanner, TemporalSettings
 from scenarios.spec import SpecError, known_name, parse_settings, parse_spec
@@ -90,6 +91,16 @@ PLANNERS: dict[str, PlannerEntry] = {
             "LaValle 1998; paper, section IV",
             RRTSettings,
             build_rrt,
+            "while_valid",
+            lambda s: float(s.horizon_s),
+            prediction_step_s=0.25,
+        ),
+        PlannerEntry(
+            "prm",
+            "OMPL's roadmap, searched for the earliest arrival among the predicted obstacles",
+            "Kavraki et al. 1996; van den Berg et al. 2006",
+            PRMSettings,
+            PRMPlanner,
             "while_valid",
             lambda s: float(s.horizon_s),
             prediction_step_s=0.25,
