@@ -1,15 +1,35 @@
 """What the planners' sensors report: true positions once per step, optionally noisy and with losses."""
 
 import hashlib
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from planners import Observation
 from scenarios import STEP_S, Scenario
-from suite.trial import TrialTask
 
 FloatArray = npt.NDArray[np.float64]
+
+
+class Sensing(Protocol):
+    """What decides on observations; every ``TrialTask`` does."""
+
+    @property
+    def scenario(self) -> Scenario:
+        """The scenario that is observed."""
+
+    @property
+    def seed(self) -> int:
+        """Seed of the experiment."""
+
+    @property
+    def noise_mm(self) -> float:
+        """Standard deviation of the noise on observed positions [mm]."""
+
+    @property
+    def dropout(self) -> float:
+        """Probability that an observation is lost."""
 
 
 class Observer:
@@ -19,7 +39,7 @@ class Observer:
     experiment is told the same.
     """
 
-    def __init__(self, task: TrialTask) -> None:
+    def __init__(self, task: Sensing) -> None:
         """Draw what will be observed in the whole trial."""
         scenario = task.scenario
         first, last = -round(scenario.observation_s / STEP_S), int(np.ceil(scenario.time_limit_s / STEP_S))

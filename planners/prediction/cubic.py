@@ -57,6 +57,9 @@ def _noise_variances(positions: FloatArray) -> FloatArray:
 @functools.lru_cache(maxsize=1024)
 def _weights(history: bytes, ahead: bytes) -> FloatArray:
     """What each observation contributes to each prediction, (T, r): the spline is linear in the observed values."""
-    times = np.frombuffer(history)
-    spline = interp1d(times, np.eye(len(times)), kind="cubic", axis=0, fill_value="extrapolate", assume_sorted=True)
-    return np.asarray(spline(np.frombuffer(ahead)), dtype=np.float64)
+    times, wanted = np.frombuffer(history), np.frombuffer(ahead)
+    if len(times) == 1:
+        return np.ones((len(wanted), 1))
+    order = min(3, len(times) - 1)  # 3 is "cubic"; too few observations bear less
+    spline = interp1d(times, np.eye(len(times)), kind=order, axis=0, fill_value="extrapolate", assume_sorted=True)
+    return np.asarray(spline(wanted), dtype=np.float64)

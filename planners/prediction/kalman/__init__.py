@@ -3,7 +3,7 @@
 import numpy as np
 
 from planners.prediction.kalman._kernels import follow
-from planners.prediction.model import NOISE_FLOOR_M, Extrapolation, Indices, Model
+from planners.prediction.model import NOISE_FLOOR_M, SPEED_RADII, Extrapolation, Indices, Model
 from planners.prediction.observation import Observation
 from scenarios.arm import FloatArray
 
@@ -27,7 +27,5 @@ class KalmanPredictor(Model):
         self, observation: Observation, origins: Indices, targets: Indices, ahead_s: FloatArray
     ) -> Extrapolation:
         """See ``Model.extrapolate``."""
-        times, positions, _ = observation
-        return Extrapolation(
-            *follow(times, positions, origins, targets, ahead_s, ORDERS, RATIOS, HISTORY, NOISE_FLOOR_M)
-        )
+        filters = (ORDERS, RATIOS, HISTORY, NOISE_FLOOR_M, SPEED_RADII)
+        return Extrapolation(*follow(*observation, origins, targets, ahead_s, *filters))

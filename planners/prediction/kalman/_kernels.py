@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 
+from planners.prediction._kernels import window_start
 from scenarios.kernels.jit import kernel
 
 UNKNOWN = 1e8
@@ -17,12 +18,13 @@ SKIPPED = 3
 
 
 @kernel
-def run(times, positions, first, origins, order, ratio, floor, states, covariances, evidence, variances):
+def run(times, positions, first, origins, order, ratio, floor, speed, states, covariances, evidence, variances):
     """One filter over the observations first..; what it held at each of ``origins`` (O,) into the last arguments.
 
     ``order`` is 2 for constant velocity, 3 for constant acceleration; ``ratio`` the density of the white noise that
-    disturbs it over the variance of the measurements. Fills states (O, 3, 3), covariances (O, 6) in units of the
-    noise's variance, logarithms of the evidence (O,) and the noise's variance (O,).
+    disturbs it over the variance of the measurements; ``speed`` [m/s] the scale of plausible ones, for an obstacle that
+    was seen once. Fills states (O, 3, 3), covariances (O, 6) in units of the noise's variance, logarithms of the
+    evidence (O,) and the noise's variance (O,).
     """
     x = np.zeros((3, 3))
     p00, p01, p02, p11, p12, p22 = 1.0, 0.0, 0.0, UNKNOWN, 0.0, UNKNOWN if order == 3 else 0.0
@@ -64,6 +66,8 @@ def run(times, positions, first, origins, order, ratio, floor, states, covarianc
         if i == origins[o]:
             count = max(1, seen - SKIPPED)
             variances[o] = max(squares / (3.0 * count), floor * floor)
+            if seen == 1:
+                variances[o] = speed * speed / UNKNOWN
             evidence[o] = -1.5 * (logs + count * math.log(variances[o]))
             states[o] = x
             covariances[o, 0], covariances[o, 1], covariances[o, 2] = p00, p01, p02
@@ -117,7 +121,7 @@ def extrapolated(t, state, covariance, q2, q3, place):
 
 
 @kernel
-def follow(times, positions, origins, targets, ahead, orders, ratios, history, floor):
+def follow(times, positions, radii, origins, targets, ahead, orders, ratios, history, floor, speed_radii):
     """Filters with the given ``orders`` and ``ratios`` (F,) over the last ``history`` observations, averaged.
 
     The other arguments and the results are those of ``arc._kernels.follow``.
@@ -128,8 +132,8 @@ def follow(times, positions, origins, targets, ahead, orders, ratios, history, f
     states, covariances = np.empty((n_filters, n_origins, 3, 3)), np.empty((n_filters, n_origins, 6))
     evidence, variances = np.empty((n_filters, n_origins)), np.empty((n_filters, n_origins))
     state, covariance = np.empty((3, 3)), np.empty(6)
-    first = max(0, times.shape[0] - history)
     for j in range(m):
+        first = window_start(positions[:, j], times.shape[0] - 1, history)
         for f in range(n_filters):
             run(
                 times,
@@ -139,6 +143,7 @@ def follow(times, positions, origins, targets, ahead, orders, ratios, history, f
                 orders[f],
                 ratios[f],
                 floor,
+                speed_radii * radii[j],
                 states[f],
                 covariances[f],
                 evidence[f],
