@@ -14,9 +14,20 @@ PIECE_RAD = 0.05
 
 
 @kernel
-def clearance(q, t, section_length, arm_radius, world):
-    """Signed distance [m] of the body at ``q`` (2n,) [rad] to the nearest obstacle at ``t`` [s]."""
+def within_bends(q, max_bend):
+    """Whether every section's bend is at most ``max_bend`` [rad]."""
+    for i in range(q.shape[0] // 2):
+        if not math.hypot(q[2 * i], q[2 * i + 1]) <= max_bend + 1e-9:
+            return False
+    return True
+
+
+@kernel
+def clearance(q, t, section_length, arm_radius, max_bend, world):
+    """Signed distance [m] of the body at ``q`` (2n,) [rad] from the nearest obstacle at ``t``; -inf past the bends."""
     n = q.shape[0] // 2
+    if not within_bends(q, max_bend):
+        return -math.inf
     return section_clearances(q, t, section_length, arm_radius, world, np.empty((n, ARC_SIZE)), np.empty(n))
 
 
@@ -66,6 +77,13 @@ def within_rates(q0, q1, duration, section_length, bend_rate, tip_speed):
     """Whether the motion q0 -> q1 in ``duration`` [s] keeps to the bending rate and the tip speed."""
     if largest_bend_change(q0, q1) > bend_rate * duration * (1.0 + 1e-9):
         return False
+    # A bound first, which spares most motions the tip itself: ``motion_bounds`` of the last section's end.
+    n, bound = q0.shape[0] // 2, 0.0
+    for i in range(n):
+        change = math.hypot(q1[2 * i] - q0[2 * i], q1[2 * i + 1] - q0[2 * i + 1])
+        bound += (n - i - 0.5) * section_length * change
+    if bound <= tip_speed * duration:
+        return True
     return fastest_tip(q0, q1, section_length) <= tip_speed * duration * (1.0 + 1e-9)
 
 
@@ -86,9 +104,8 @@ def motion_valid(q0, t0, q1, t1, section_length, arm_radius, max_bend, bend_rate
     """
     if not t1 > t0:
         return False
-    for i in range(q1.shape[0] // 2):  # the start was an end before; discs are convex
-        if math.hypot(q1[2 * i], q1[2 * i + 1]) > max_bend + 1e-9:
-            return False
+    if not within_bends(q1, max_bend):  # the start was an end before; discs are convex
+        return False
     if not within_rates(q0, q1, t1 - t0, section_length, bend_rate, tip_speed):
         return False
     share, _ = motion_clear_until(q0, t0, q1, t1, 0.0, tolerance, section_length, arm_radius, world)

@@ -58,8 +58,7 @@ class Query(NamedTuple):
 
 def read_state(state: ob.State, dof: int) -> tuple[FloatArray, float]:
     """Copy (configuration (dof,) [rad], time [s]) out of an OMPL state."""
-    bending = state[0]
-    return np.array([bending[i] for i in range(dof)]), float(state[1].position)
+    return np.fromiter(map(state[0].__getitem__, range(dof)), np.float64, dof), float(state[1].position)
 
 
 def write_state(state: ob.State, q: FloatArray, time_s: float) -> None:
@@ -86,11 +85,9 @@ class SpaceTimeChecker(ob.StateValidityChecker):
         self.checks += 1
         arm, world = self.query.arm, self.query.world
         q, time_s = read_state(state, arm.dof)
-        if not bool(arm.within_bends(q)):
-            return -math.inf
-        gap = float(_kernels.clearance(q, time_s, arm.section_length_m, arm.radius_m, world))
+        gap = float(_kernels.clearance(q, time_s, arm.section_length_m, arm.radius_m, arm.max_bend_rad, world))
         shapes = self.query.shapes
-        return gap if shapes is None or gap > 0.0 else shapes.clearance(arm, q, time_s)
+        return gap if shapes is None or gap > 0.0 or gap == -math.inf else shapes.clearance(arm, q, time_s)
 
 
 class SpaceTimeMotionValidator(ob.MotionValidator):
@@ -109,10 +106,11 @@ class SpaceTimeMotionValidator(ob.MotionValidator):
 
     def check(self, q0: FloatArray, t0_s: float, q1: FloatArray, t1_s: float) -> bool:
         """The same on arrays (dof,) [rad] and times [s]; one compiled call, unless shapes have to decide."""
-        if self.check_all(q0[None], t0_s, q1[None], t1_s)[0, 0]:
-            return True
+        self.checks += 1
         query = self.query
-        if query.shapes is None or not self._motions_valid(q0[None], t0_s, q1[None], t1_s, _NOTHING)[0, 0]:
+        if _kernels.motion_valid(q0, t0_s, q1, t1_s, *self._limits(), query.world):
+            return True
+        if query.shapes is None or not _kernels.motion_valid(q0, t0_s, q1, t1_s, *self._limits(), _NOTHING):
             return False
         return query.shapes.is_motion_valid(query.arm, q0, t0_s, q1, t1_s)
 
@@ -122,17 +120,18 @@ class SpaceTimeMotionValidator(ob.MotionValidator):
         So many motions are checked against spheres that hold the obstacles, whatever their shapes are.
         """
         self.checks += len(before) * len(after)
-        return self._motions_valid(before, t0_s, after, t1_s, self.query.world)
-
-    def _motions_valid(
-        self, before: FloatArray, t0_s: float, after: FloatArray, t1_s: float, world: SampledWorld
-    ) -> npt.NDArray[np.bool_]:
-        arm = self.query.arm
         valid: npt.NDArray[np.bool_] = _kernels.motions_valid(
-            before, t0_s, after, t1_s, arm.section_length_m, arm.radius_m, arm.max_bend_rad,
-            arm.max_bend_rate_rad_s, arm.max_tip_speed_m_s, CONTACT_TOLERANCE_M, world,
-        )  # fmt: skip
+            before, t0_s, after, t1_s, *self._limits(), self.query.world
+        )
         return valid
+
+    def _limits(self) -> tuple[float, ...]:
+        """The arm and the tolerance, as the kernels take them."""
+        arm = self.query.arm
+        return (
+            arm.section_length_m, arm.radius_m, arm.max_bend_rad,
+            arm.max_bend_rate_rad_s, arm.max_tip_speed_m_s, CONTACT_TOLERANCE_M,
+        )  # fmt: skip
 
 
 class TipGoal(ob.GoalSampleableRegion):

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from pydantic import BaseModel, ConfigDict, Field
 
 from scenarios.errors import ScenarioError
-from scenarios.kernels import kinematics
+from scenarios.kernels import batch, kinematics
 from scenarios.spec import parse_settings, parse_spec
 
 FloatArray = npt.NDArray[np.float64]
@@ -64,8 +64,9 @@ class ContinuumArm(BaseModel):
 
     def within_bends(self, configurations: FloatArray) -> npt.NDArray[np.bool_]:
         """Whether every section's bend is allowed: (N, dof) [rad] -> (N,)."""
-        bends = np.hypot(configurations[..., 0::2], configurations[..., 1::2])
-        return np.asarray((bends <= self.max_bend_rad + 1e-9).all(axis=-1))
+        rows = np.ascontiguousarray(configurations, dtype=np.float64).reshape(-1, self.dof)
+        within: npt.NDArray[np.bool_] = batch.within_bends(rows, self.max_bend_rad + 1e-9)
+        return within.reshape(np.shape(configurations)[:-1])
 
     def tip(self, q: npt.ArrayLike) -> FloatArray:
         """Tip position (3,) [m] of one configuration (dof,) [rad]."""

@@ -89,6 +89,20 @@ def _lower_excess(x, y, z, reach, w):
 
 
 @kernel
+def within_bends(configurations, max_bend):
+    """Whether every section's bend is at most ``max_bend`` [rad], which no bend that is not a number is: (N,)."""
+    out = np.empty(configurations.shape[0], np.bool_)
+    limit = max_bend * max_bend
+    for i in range(configurations.shape[0]):
+        inside = True
+        for k in range(0, configurations.shape[1], 2):
+            u, v = configurations[i, k], configurations[i, k + 1]
+            inside &= u * u + v * v <= limit
+        out[i] = inside
+    return out
+
+
+@kernel
 def states_free(configurations, section_length, centers, reach):
     """Whether each configuration is free of the spheres: (N, 2n) [rad] -> (N,).
 
