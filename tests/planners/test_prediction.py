@@ -168,5 +168,5 @@ def test_margins_grow_the_radii_up_to_the_largest() -> None:
 
 
 def test_an_unknown_predictor_is_one_line_that_lists_the_known() -> None:
-    with pytest.raises(SpecError, match=r"^predictor: found 'kalman', allowed .*cubic.*truth"):
-        build_predictor("kalman", SCENARIO)
+    with pytest.raises(SpecError, match=r"^predictor: found 'crystal ball', allowed .*cubic.*truth"):
+        build_predictor("crystal ball", SCENARIO)

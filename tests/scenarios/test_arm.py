@@ -60,8 +60,8 @@ def test_a_backbone_does_not_stretch() -> None:
 
 @pytest.mark.parametrize(
     ("axis", "sign", "optimum"),
-    [(0, 1, 0.40235), (0, -1, 0.40235), (1, 1, 0.40235), (2, -1, 0.300), (2, 1, 0.450)],
-    ids=["x", "-x", "y", "-z", "z"],
+    [(0, 1, 0.40235), (1, -1, 0.40235), (2, -1, 0.300), (2, 1, 0.450)],
+    ids=["x", "-y", "-z", "z"],
 )
 def test_continuous_workspace_box(axis: int, sign: int, optimum: float) -> None:
     rng, bounds = np.random.default_rng(0), [(-4.0, 4.0), (0.0, math.pi)] * 3
