@@ -14,7 +14,7 @@ import numpy.typing as npt
 from ompl import base as ob
 
 from planners import _kernels
-from planners.goals import GoalConfigurations
+from planners.goals import KnownGoals
 from planners.prediction import Prediction
 from scenarios.arm import ContinuumArm, FloatArray
 from scenarios.collision import CONTACT_TOLERANCE_M
@@ -101,6 +101,9 @@ class SpaceTimeMotionValidator(ob.MotionValidator):
 
     def checkMotion(self, start: ob.State, end: ob.State) -> bool:
         """Whether the motion, linear in bending vectors, is possible and free under the prediction."""
+        if not end[1].position > start[1].position:  # half of what a tree proposes: refused unread
+            self.checks += 1
+            return False
         dof = self.query.arm.dof
         return self.check(*read_state(start, dof), *read_state(end, dof))
 
@@ -141,7 +144,7 @@ class TipGoal(ob.GoalSampleableRegion):
         self,
         si: ob.SpaceInformation,
         query: Query,
-        goals: GoalConfigurations,
+        goals: KnownGoals,
         start: tuple[FloatArray, float],
         latest_s: float,
         rng: np.random.Generator,
@@ -152,7 +155,7 @@ class TipGoal(ob.GoalSampleableRegion):
         self._goals = goals
         self._start = start
         self._latest_s = latest_s
-        self._rng = rng
+        self.rng = rng
         # Strictly inside: the audit measures the same distance with other arithmetic.
         self.setThreshold(0.999 * query.goal_tolerance_m)
 
@@ -164,8 +167,8 @@ class TipGoal(ob.GoalSampleableRegion):
     def sampleGoal(self, state: ob.State) -> None:
         """Write a goal configuration at an arrival time drawn between its earliest and the planning horizon."""
         configurations, earliest_s = self.reachable
-        k = int(self._rng.integers(len(configurations)))
-        write_state(state, configurations[k], self._rng.uniform(earliest_s[k], self._latest_s))
+        k = int(self.rng.integers(len(configurations)))
+        write_state(state, configurations[k], self.rng.uniform(earliest_s[k], self._latest_s))
 
     def maxSampleCount(self) -> int:
         """As many as asked for, when there is a goal configuration at all."""
@@ -192,24 +195,20 @@ class TipGoal(ob.GoalSampleableRegion):
 class SpaceTimeProblem:
     """One arm's ``SpaceInformation`` with the shared checker and validator; lives as long as a trial."""
 
-    TIME_WEIGHT = 0.5
+    TIME_WEIGHT = 0.02
 
     def __init__(self, query: Query, horizon_s: float) -> None:
         """Build the time-augmented configuration space for ``query``'s arm."""
         arm = query.arm
         self.query = query
         self.horizon_s = horizon_s
+        self._reach = np.full(arm.dof, arm.max_bend_rad)
         self.start: tuple[FloatArray, float] | None = None
         """Where the arm is in the latest definition: configuration (dof,) [rad] and time [s]."""
-        bending = ob.RealVectorStateSpace(arm.dof)
-        bounds = ob.RealVectorBounds(arm.dof)
-        bounds.setLow(-arm.max_bend_rad)
-        bounds.setHigh(arm.max_bend_rad)
-        bending.setBounds(bounds)
         # Every section turns at most at the bending rate, so the whole vector moves at most sqrt(n) times that.
         v_max = arm.max_bend_rate_rad_s * math.sqrt(arm.n_sections)
-        self.space = ob.SpaceTimeStateSpace(bending, v_max, self.TIME_WEIGHT)
-        self.space.setTimeBounds(0.0, horizon_s)
+        self.space = ob.SpaceTimeStateSpace(ob.RealVectorStateSpace(arm.dof), v_max, self.TIME_WEIGHT)
+        self.confine(-self._reach, self._reach, 0.0, horizon_s)
         self.si = ob.SpaceInformation(self.space)
         self.checker = SpaceTimeChecker(self.si, query)
         self.validator = SpaceTimeMotionValidator(self.si, query)
@@ -222,17 +221,35 @@ class SpaceTimeProblem:
         self.query = query
         self.checker.query = query
         self.validator.query = query
-        self.space.setTimeBounds(now_s, now_s + self.horizon_s)
+        self.confine(-self._reach, self._reach, now_s, now_s + self.horizon_s)
+
+    def confine(self, low: FloatArray, high: FloatArray, from_s: float, until_s: float) -> None:
+        """Let planners sample between ``low`` and ``high`` (dof,) [rad] and two times, until the next update."""
+        bounds = ob.RealVectorBounds(len(low))
+        for i in range(len(low)):
+            bounds.setLow(i, float(low[i]))
+            bounds.setHigh(i, float(high[i]))
+        self.space.getSpaceComponent().setBounds(bounds)
+        self.space.setTimeBounds(from_s, until_s)
         self.space.updateEpsilon()
 
     def definition(
-        self, q: FloatArray, now_s: float, goals: GoalConfigurations, rng: np.random.Generator
+        self,
+        q: FloatArray,
+        now_s: float,
+        goals: KnownGoals,
+        rng: np.random.Generator,
+        latest_s: float | None = None,
     ) -> ob.ProblemDefinition:
-        """Pose the solve: from ``q`` (dof,) [rad] at ``now_s`` [s] to the goal, which may be sampled at ``goals``."""
+        """Pose the solve: from ``q`` (dof,) [rad] at ``now_s`` [s] to the goal, which may be sampled at ``goals``.
+
+        Arrivals are sampled up to ``latest_s``, the horizon when None.
+        """
         self.start = (q, now_s)
         start = self.si.allocState()
         write_state(start, q, now_s)
         definition = ob.ProblemDefinition(self.si)
         definition.addStartState(start)
-        definition.setGoal(TipGoal(self.si, self.query, goals, (q, now_s), now_s + self.horizon_s, rng))
+        until_s = now_s + self.horizon_s if latest_s is None else latest_s
+        definition.setGoal(TipGoal(self.si, self.query, goals, (q, now_s), until_s, rng))
         return definition

@@ -18,7 +18,7 @@ from planners.heuristics import HeuristicSettings, PurgingPlanner, WaitingPlanne
 from planners.potential_field import PotentialFieldPlanner, PotentialFieldSettings
 from planners.problem import SpaceTimeProblem
 from planners.roadmap import PRMPlanner, PRMSettings
-from planners.sampling import RRTSettings, build_rrt
+from planners.sampling import RRTSettings, TreeSettings, build_rrt, build_rrtconnect
 from planners.temporal.planner import TemporalPlanner, TemporalSettings
 from scenarios.spec import SpecError, known_name, parse_settings, parse_spec
 from scenarios.spec import split_specs as split_texts
@@ -88,12 +88,28 @@ PLANNERS: dict[str, PlannerEntry] = {
         PlannerEntry(
             "rrt",
             "OMPL's RRT in space-time, replanned when the prediction invalidates the path",
-            "LaValle 1998; paper, section IV",
+            "LaValle 1998",
             RRTSettings,
             build_rrt,
             "while_valid",
             lambda s: float(s.horizon_s),
             prediction_step_s=0.25,
+            prediction_margin=1.0,
+            largest_bound_m=LARGEST_BOUND_M,
+            predictor="portfolio",
+        ),
+        PlannerEntry(
+            "rrtconnect",
+            "OMPL's RRT-Connect in space-time, replanned when the prediction invalidates the path",
+            "Kuffner and LaValle, ICRA 2000",
+            TreeSettings,
+            build_rrtconnect,
+            "while_valid",
+            lambda s: float(s.horizon_s),
+            prediction_step_s=0.25,
+            prediction_margin=1.0,
+            largest_bound_m=LARGEST_BOUND_M,
+            predictor="portfolio",
         ),
         PlannerEntry(
             "prm",
@@ -104,6 +120,9 @@ PLANNERS: dict[str, PlannerEntry] = {
             "while_valid",
             lambda s: float(s.horizon_s),
             prediction_step_s=0.25,
+            prediction_margin=1.0,
+            largest_bound_m=LARGEST_BOUND_M,
+            predictor="portfolio",
         ),
         PlannerEntry(
             "pf",

@@ -192,7 +192,9 @@ def _budget(iterations: int | None) -> ob.PlannerTerminationCondition:
 
 
 def _seed_ompl(seed: int) -> None:
-    """Reseed OMPL's process-wide generator; it warns about every seed after the first, but takes it."""
+    """Reseed OMPL's process-wide generator; it warns about every seed after the first, but takes it.
+
+    OMPL stays silent from here on: what it has to say is in the status of each solve.
+    """
     ou.setLogLevel(ou.LogLevel.LOG_NONE)
     ou.RNG.setSeed(seed % (2**31 - 1) + 1)
-    ou.setLogLevel(ou.LogLevel.LOG_ERROR)

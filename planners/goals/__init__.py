@@ -1,12 +1,33 @@
 """Configurations whose tip is at the goal: what trees in configuration space are grown towards."""
 
 import functools
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from planners.goals import _kernels
 from scenarios.arm import ContinuumArm, FloatArray
 from scenarios.families.base import random_configuration
+
+
+class KnownGoals(Protocol):
+    """Something that knows goal configurations."""
+
+    @property
+    def configurations(self) -> FloatArray:
+        """Configurations (K, dof) [rad] with the tip at the goal."""
+
+
+class OneGoal(NamedTuple):
+    """A single goal configuration."""
+
+    configuration: FloatArray
+    """Shape (dof,), [rad]."""
+
+    @property
+    def configurations(self) -> FloatArray:
+        """The one, shape (1, dof), [rad]."""
+        return self.configuration[None]
 
 
 class GoalConfigurations:

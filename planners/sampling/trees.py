@@ -1,0 +1,104 @@
+"""OMPL's random trees in space-time, grown towards one goal configuration after another.
+
+A tree that samples all configurations and all times wastes nearly every check on motions that are backward in time or
+too fast. So a solve is a series of short attempts, each at one goal configuration, the soonest to be reached first:
+samples come from the box about start and goal, widened by a detour, and from the time until shortly after the earliest
+arrival.
+"""
+
+import itertools
+import math
+from collections.abc import Callable
+
+import numpy as np
+from ompl import base as ob
+from ompl import geometric as og
+from pydantic import BaseModel, ConfigDict, Field
+
+from planners.base import ArmPlanner
+from planners.goals import OneGoal
+from planners.problem import SpaceTimeProblem, TimedPath, read_state
+from scenarios.arm import FloatArray
+
+
+class TreeSettings(BaseModel):
+    """Settings that all trees share."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    range: float = Field(
+        default=1000.0, gt=0, le=1000, description="longest motion added to a tree, in space-time units"
+    )
+    iterations: int = Field(default=1000, ge=1, le=10**9, description="budget of one solve, in samples")
+    attempt: int = Field(
+        default=50, ge=1, le=10**9, description="samples spent on a goal configuration before the next"
+    )
+    goals: int = Field(default=32, ge=1, le=1000, description="goal configurations tried, the soonest to be reached")
+    detour_rad: float = Field(default=1.0, ge=0, le=10, description="widening of the box about start and goal")
+    slack_s: float = Field(default=20.0, gt=0, le=3600, description="latest arrival tried, after the earliest possible")
+    horizon_s: float = Field(default=90.0, gt=0, le=3600, description="latest arrival considered, from now")
+
+
+class RRTSettings(TreeSettings):
+    """Settings of ``rrt``."""
+
+    goal_bias: float = Field(default=0.4, ge=0, le=1, description="share of samples drawn from the goal")
+
+
+class SpaceTimeTree(ArmPlanner):
+    """Lends one of OMPL's trees a goal and a part of space-time, attempt after attempt, until it has a path."""
+
+    def __init__(self, problem: SpaceTimeProblem, settings: TreeSettings, name: str, tree: ob.Planner) -> None:
+        """Plan on ``problem`` with ``tree``, a planner on the same space."""
+        super().__init__(problem, name)
+        self._settings, self._tree = settings, tree
+        tree.setRange(settings.range)
+
+    def search(self, q: FloatArray, now_s: float, stop: Callable[[], bool]) -> TimedPath | None:
+        """The first path to the goal; else the one that leads nearest to it."""
+        goal = self.getProblemDefinition().getGoal()
+        configurations, earliest_s = goal.reachable
+        self._tree.clear()
+        nearest, path = math.inf, None
+        for k in itertools.cycle(np.argsort(earliest_s)[: self._settings.goals]):
+            if stop():
+                break
+            found = self._attempt(q, now_s, configurations[k], float(earliest_s[k]), stop)
+            distance = math.inf if found is None else self.problem.query.goal_distance(found.configurations_rad[-1])
+            if distance < nearest:
+                nearest, path = distance, found
+            if nearest <= self.problem.query.goal_tolerance_m:
+                break
+        return path
+
+    def _attempt(
+        self, q: FloatArray, now_s: float, goal: FloatArray, earliest_s: float, stop: Callable[[], bool]
+    ) -> TimedPath | None:
+        """Grow a tree towards one goal configuration (dof,) [rad]."""
+        settings, problem = self._settings, self.problem
+        latest_s = min(earliest_s + settings.slack_s, now_s + settings.horizon_s)
+        reach, detour = problem.query.arm.max_bend_rad, settings.detour_rad
+        low, high = np.minimum(q, goal) - detour, np.maximum(q, goal) + detour
+        problem.confine(np.maximum(low, -reach), np.minimum(high, reach), now_s, latest_s)
+        rng = self.getProblemDefinition().getGoal().rng
+        definition = problem.definition(q, now_s, OneGoal(goal), rng, latest_s)
+        self._tree.setProblemDefinition(definition)
+        self._tree.setup()
+        left = iter(range(settings.attempt))
+        self._tree.solve(ob.PlannerTerminationCondition(lambda: next(left, None) is None or stop()))
+        if not definition.hasSolution():
+            return None
+        states = [read_state(state, len(q)) for state in definition.getSolutionPath().getStates()]
+        return TimedPath(np.array([t for _, t in states]), np.array([configuration for configuration, _ in states]))
+
+
+def build_rrt(problem: SpaceTimeProblem, settings: RRTSettings) -> ob.Planner:
+    """OMPL's RRT (LaValle 1998)."""
+    tree = og.RRT(problem.si)
+    tree.setGoalBias(settings.goal_bias)
+    return SpaceTimeTree(problem, settings, "rrt", tree)
+
+
+def build_rrtconnect(problem: SpaceTimeProblem, settings: TreeSettings) -> ob.Planner:
+    """OMPL's RRT-Connect (Kuffner and LaValle 2000); its goal tree grows backward in time."""
+    return SpaceTimeTree(problem, settings, "rrtconnect", og.RRTConnect(problem.si))
