@@ -145,18 +145,41 @@ def follow_lines(times, positions, radii, origins, targets, ahead, window, floor
 
 
 @kernel
-def weigh(weights, history, noise, places, variances):
-    """Weighted sums (m, T, 3) of ``history`` (r, m, 3) by ``weights`` (T, r), variances of their errors (m, T)."""
+def weigh(weights, positions, last, j, noise, places, variances):
+    """Weighted sums (T, 3) of the observations up to ``last`` by ``weights`` (T, r); variances of their errors (T,)."""
+    first = last + 1 - weights.shape[1]
     for h in range(weights.shape[0]):
         gain = 0.0
         for i in range(weights.shape[1]):
-            gain += weights[h, i] * weights[h, i]
-        for j in range(history.shape[1]):
-            variances[j, h] = 2.0 * gain * noise[j]
-            for k in range(3):
-                places[j, h, k] = 0.0
-                for i in range(weights.shape[1]):
-                    places[j, h, k] += weights[h, i] * history[i, j, k]
+            if first + i >= 0:  # an early origin has fewer, the weights of the others are none
+                gain += weights[h, i] * weights[h, i]
+                for k in range(3):
+                    places[h, k] += weights[h, i] * positions[first + i, j, k]
+        variances[h] = 2.0 * gain * noise
+
+
+@kernel
+def follow_weights(positions, origins, past_weights, weights, noise):
+    """Weighted sums of the last observations at each of ``origins``.
+
+    Args:
+        positions: Observed centres, shape (r, m, 3), [m], none lost.
+        origins: Ascending indices of observations to forecast from, shape (O,); the last is the present.
+        past_weights: Weights of the last observations at each past origin, shape (O - 1, H, s).
+        weights: Weights of the last observations now, shape (T, s).
+        noise: Variance of the noise, shape (m,), [m^2].
+
+    Returns:
+        The results of ``arc._kernels.follow``.
+    """
+    m, n_times = positions.shape[1], weights.shape[0]
+    past, past_var = np.zeros((m, *past_weights.shape[:2], 3)), np.zeros((m, *past_weights.shape[:2]))
+    centers, var = np.zeros((m, n_times, 3)), np.zeros((m, n_times))
+    for j in range(m):
+        for o in range(past_weights.shape[0]):
+            weigh(past_weights[o], positions, origins[o], j, noise[j], past[j, o], past_var[j, o])
+        weigh(weights, positions, origins[-1], j, noise[j], centers[j], var[j])
+    return past, past_var, centers, var, noise
 
 
 @kernel
@@ -201,6 +224,9 @@ def judge(
     m = positions.shape[1]
     bounds, scores = np.empty(var.shape), np.zeros(m)
     step = (times[-1] - times[0]) / (times.shape[0] - 1) if times.shape[0] > 1 else 1.0
+    grown = np.empty(ahead.shape[0])
+    for h in range(ahead.shape[0]):
+        grown[h] = growth(ahead[h], step, order) ** 2
     for j in range(m):
         lag, excess, hidden, weight, pairs, judged = 0.0, 0.0, 0.0, 0.0, 0, 0
         for o in range(targets.shape[0]):
@@ -230,13 +256,14 @@ def judge(
         if weight > 0.0:
             missing = few * max(0.0, excess / weight) + min(missing, math.sqrt(hidden) / weight)
         for h in range(ahead.shape[0]):
-            t = ahead[h]
-            own = var[j, h] + lag + missing * growth(t, step, order) ** 2
-            square = 0.0
-            for k in range(3):
-                square += (centers[j, h, k] - centers[j, 0, k]) ** 2
-            gone = 0.5 * (math.sqrt(square) + speed * t)
-            bounds[j, h] = math.sqrt(min(own, var[j, 0] + lag + gone * gone))
+            own = var[j, h] + lag + missing * grown[h]
+            half = 0.5 * speed * ahead[h]
+            if own > var[j, 0] + lag + half * half:
+                square = 0.0
+                for k in range(3):
+                    square += (centers[j, h, k] - centers[j, 0, k]) ** 2
+                own = min(own, var[j, 0] + lag + (half + 0.5 * math.sqrt(square)) ** 2)
+            bounds[j, h] = math.sqrt(own)
     return bounds, scores
 
 

@@ -5,7 +5,7 @@ import functools
 import numpy as np
 from scipy.interpolate import interp1d
 
-from planners.prediction._kernels import weigh
+from planners.prediction._kernels import follow_weights
 from planners.prediction.model import Extrapolation, Indices, Model
 from planners.prediction.observation import Observation, without_gaps
 from scenarios.arm import FloatArray
@@ -31,20 +31,9 @@ class CubicPredictor(Model):
     ) -> Extrapolation:
         """See ``Model.extrapolate``."""
         times, positions, _ = without_gaps(observation)
-        noise = _noise_variances(positions)
-        m = positions.shape[1]
-        past, past_variances = np.zeros((m, *targets.shape, 3)), np.zeros((m, *targets.shape))
-        for o, origin in enumerate(origins[:-1]):
-            reached = int(np.count_nonzero(targets[o] >= 0))  # targets ascend, those past the present come last
-            history = slice(max(0, origin + 1 - HISTORY), origin + 1)
-            weights = _weights(
-                (times[history] - times[origin]).tobytes(), (times[targets[o, :reached]] - times[origin]).tobytes()
-            )
-            weigh(weights, positions[history], noise, past[:, o], past_variances[:, o])
-        centers, variances = np.empty((m, len(ahead_s), 3)), np.empty((m, len(ahead_s)))
-        weights = _weights((times[-HISTORY:] - times[-1]).tobytes(), ahead_s.tobytes())
-        weigh(weights, positions[-HISTORY:], noise, centers, variances)
-        return Extrapolation(past, past_variances, centers, variances, noise)
+        now = times[-1]
+        past, present = _all_weights((times - now).tobytes(), origins.tobytes(), targets.tobytes(), ahead_s.tobytes())
+        return Extrapolation(*follow_weights(positions, origins, past, present, _noise_variances(positions)))
 
 
 def _noise_variances(positions: FloatArray) -> FloatArray:
@@ -52,6 +41,19 @@ def _noise_variances(positions: FloatArray) -> FloatArray:
     order = min(4, len(positions) - 1)
     gain = (1.0, 2.0, 6.0, 20.0, 70.0)[order]
     return np.asarray(np.square(np.diff(positions, n=order, axis=0)).mean(axis=(0, 2)) / gain)
+
+
+@functools.lru_cache(maxsize=256)
+def _all_weights(times: bytes, origins: bytes, targets: bytes, ahead: bytes) -> tuple[FloatArray, FloatArray]:
+    """Weights of the last observations at each past origin for its targets, (O - 1, H, r), and now, (T, r)."""
+    seen, starts = np.frombuffer(times), np.frombuffer(origins, dtype=np.int64)[:-1]
+    wanted = np.frombuffer(targets, dtype=np.int64).reshape(len(starts), -1 if len(starts) else 0)
+    past = np.zeros((*wanted.shape, min(HISTORY, len(seen))))
+    for o, start in enumerate(starts):
+        history = seen[max(0, start + 1 - HISTORY) : start + 1] - seen[start]
+        there = wanted[o] >= 0
+        past[o, there, -len(history) :] = _weights(history.tobytes(), (seen[wanted[o, there]] - seen[start]).tobytes())
+    return past, _weights(seen[-HISTORY:].tobytes(), ahead)
 
 
 @functools.lru_cache(maxsize=1024)
