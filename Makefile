@@ -1,19 +1,23 @@
 # `make run` and `make test` need only make and Python >= 3.11; everything else goes into $(VENV).
 #   make run PYTHON=python3.12        another interpreter
 #   make run VENV=/some/where         another virtual environment
+#   make bench BENCH=--quick          a short look; BENCH="validity step" runs these parts alone
 
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 
-.PHONY: run test lint lock clean
+.PHONY: run test bench lint lock clean
 
 run: $(INSTALLED)
 	$(BIN)/suite run --planners temporal,rrt,pf
 
 test: $(INSTALLED)
 	$(BIN)/python -m pytest
+
+bench: $(INSTALLED)
+	$(BIN)/python -m benchmarks $(BENCH)
 
 lint: $(INSTALLED)
 	$(BIN)/ruff check .

@@ -1,0 +1,46 @@
+"""Print every figure of ``docs/performance.md``: ``python -m benchmarks [--quick] [part ...]``."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import platform
+import sys
+
+for library in ("OMP", "OPENBLAS", "MKL"):
+    os.environ.setdefault(f"{library}_NUM_THREADS", "1")  # before NumPy is loaded: figures are per core
+
+
+def main() -> None:
+    """Run the parts asked for, all by default."""
+    from benchmarks.boundary import boundary
+    from benchmarks.planning import against_literal, growth
+    from benchmarks.suite_runs import memory, step, throughput
+    from benchmarks.timing import render
+    from benchmarks.validity import validity
+
+    parts = {
+        "literal": ("Temporal planner against the literal reading of Algorithms 1 and 2", against_literal),
+        "validity": ("State validity: default arm, 6 spheres, one core", validity),
+        "boundary": ("The OMPL boundary", boundary),
+        "growth": ("Construction of the temporal graph", growth),
+        "throughput": ("The suite", throughput),
+        "step": ("What a step of a trial takes", step),
+        "memory": ("Memory", memory),
+    }
+    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
+    parser.add_argument("parts", nargs="*", metavar="part", help=f"which to run: {', '.join(parts)}; all by default")
+    parser.add_argument("--quick", action="store_true", help="fewer and smaller samples: two minutes, not twenty")
+    given = parser.parse_args()
+    unknown = [part for part in given.parts if part not in parts]
+    if unknown:
+        parser.error(f"part: found {unknown[0]!r}, allowed {', '.join(parts)}")
+    sys.stdout.write(f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}\n")
+    for name in given.parts or parts:
+        title, measure = parts[name]
+        sys.stdout.write(f"\n{render(title, measure(given.quick))}")
+        sys.stdout.flush()
+
+
+if __name__ == "__main__":
+    main()
