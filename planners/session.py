@@ -177,7 +177,7 @@ def warm_up(specs: Sequence[PlannerSpec], arm: ContinuumArm) -> None:
     observation = Observation(times, positions, np.array([0.02]))
     for spec in specs:
         for limits in (False, True):
-            session = Session(spec, scenario, predictor="cubic", limits=limits, seed=1)
+            session = Session(spec, scenario, predictor=PLANNERS[spec.name].predictor, limits=limits, seed=1)
             plan = session.plan(start, 0.0, observation)
             if len(plan.times_s):
                 session.still_valid(plan.times_s, plan.configurations_rad, observation)

@@ -295,11 +295,11 @@ def test_after_a_hopeless_solve_it_plans_again(name: str) -> None:
 
 def test_a_path_that_leads_to_the_goal_is_valid_until_the_prediction_says_otherwise() -> None:
     scenario = CASES["moving obstacles"]
-    session, seen = session_of("rrt", scenario), observe(scenario)
+    session, seen = session_of("temporal-ct", scenario), observe(scenario)
     plan = session.plan(scenario.start, 0.0, seen)
     assert plan.status == "Exact solution"
     assert session.still_valid(plan.times_s, plan.configurations_rad, seen)
-    assert not session.still_valid(plan.times_s[:-1], plan.configurations_rad[:-1], seen)  # short of the goal
+    assert not session.still_valid(plan.times_s[:2], plan.configurations_rad[:2], seen)  # short of the goal
     assert not session.still_valid(plan.times_s, plan.configurations_rad[::-1], seen)
     in_the_way = seen._replace(positions_m=seen.positions_m.copy())
     in_the_way.positions_m[:, 0] = scenario.arm.tip(plan.configurations_rad[-1])
