@@ -32,7 +32,11 @@ def make_manifest(experiment: Experiment, scenarios: Sequence[Scenario]) -> Mani
         "scenarios": {"count": len(scenarios), "hash": hashlib.sha256(hashes.encode()).hexdigest()[:16]},
         "sources": source_hash(),
         "versions": versions(),
-        "machine": {"system": f"{platform.system()} {platform.machine()}", "processor": _processor(), "cores": os.cpu_count()},
+        "machine": {
+            "system": f"{platform.system()} {platform.machine()}",
+            "processor": _processor(),
+            "cores": os.cpu_count(),
+        },
     }
 
 
