@@ -121,6 +121,8 @@ def test_rates_are_limits(empty: SpaceTimeProblem, move: str) -> None:
 def test_time_goes_forward(empty: SpaceTimeProblem, t1: float) -> None:
     q = np.full(6, 0.1)
     assert not empty.si.checkMotion(state_of(empty, q, 1.0), state_of(empty, q, t1))
+    assert not empty.validator.check(q, 1.0, q, t1)
+    assert not empty.validator.check_all(q[None], 1.0, q[None], t1)[0, 0]
     assert empty.si.checkMotion(state_of(empty, q, 1.0), state_of(empty, q, 1.001))
 
 
