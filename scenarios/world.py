@@ -1,11 +1,13 @@
 """Obstacles as the kernels see them: spheres, sampled in time, of true or of predicted motion alike."""
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from scenarios.kernels.approach import fastest_approach
 from scenarios.motion import FloatArray
 from scenarios.obstacle import Obstacle
 
@@ -35,10 +37,10 @@ def make_world(start_s: float, step_s: float, centers_m: FloatArray, radii_m: Fl
     # A copy: a broadcast array is read-only, for which every kernel would be compiled once more.
     radii = np.empty(centers.shape[:2])
     radii[:] = radii_m
-    if not (np.isfinite(centers).all() and np.isfinite(radii).all() and step_s > 0):
+    approach = float(fastest_approach(centers, radii))
+    if math.isnan(approach) or not step_s > 0:
         raise ValueError("world: samples must be finite and step_s positive")
-    approach = np.linalg.norm(np.diff(centers, axis=0), axis=2) + np.maximum(np.diff(radii, axis=0), 0.0)
-    speed = float(approach.max(initial=0.0)) / step_s
+    speed = approach / step_s
     return SampledWorld(float(start_s), float(step_s), centers, radii, speed)
 
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import csv
+import io
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TextIO
 
+import numpy as np
 import pandas as pd
 
 from scenarios import Scenario
@@ -14,7 +16,7 @@ from suite.files import replacing, write_text
 from suite.journal import Executed, Journal
 from suite.tables import summarize
 from suite.text import as_csv, as_markdown_page
-from suite.trials import trials_csv, trials_frame
+from suite.trials import FLOAT_FORMAT, trials_csv, trials_frame
 
 
 def write_derived(
@@ -48,7 +50,10 @@ def _write_trajectories(handle: TextIO, executed: Iterable[Executed], n_sections
     bends = [f"{axis}{section}_rad" for section in range(1, n_sections + 1) for axis in "uv"]
     writer.writerow(["scenario_id", "planner", "time_s", *bends])
     for trial in executed:
-        for time_s, configuration in zip(trial.times_s, trial.configurations_rad, strict=True):
-            bent = [f"{bend:.9g}" for bend in configuration]
-            blank = [""] * (len(bends) - len(bent))
-            writer.writerow([trial.scenario_id, trial.planner, f"{time_s:.9g}", *bent, *blank])
+        timed = np.column_stack([trial.times_s, trial.configurations_rad])
+        # One format for a whole trial: thousands of states are written in the time that cells would take for hundreds.
+        names = io.StringIO()
+        csv.writer(names, lineterminator="").writerow([trial.scenario_id, trial.planner])
+        numbers = [FLOAT_FORMAT] * timed.shape[1] + [""] * (1 + len(bends) - timed.shape[1])
+        line = ",".join([names.getvalue().replace("%", "%%"), *numbers]) + "\n"
+        handle.write(line * len(timed) % tuple(timed.reshape(-1).tolist()))
