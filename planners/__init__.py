@@ -1,7 +1,7 @@
 """The methods: prediction, the OMPL space-time problem, and every planner."""
 
 from planners.prediction import PREDICTORS, Observation, build_predictor
-from planners.registry import ALIASES, PLANNERS, PlannerEntry, PlannerSpec, parse_planner, split_specs
+from planners.registry import ALIASES, PLANNERS, PlannerEntry, PlannerSpec, is_bound, parse_planner, split_specs
 from planners.session import Plan, Session, check_fit, warm_up
 
 __all__ = [
@@ -15,6 +15,7 @@ __all__ = [
     "Session",
     "build_predictor",
     "check_fit",
+    "is_bound",
     "parse_planner",
     "split_specs",
     "warm_up",

@@ -167,6 +167,12 @@ ALIASES: dict[str, tuple[str, dict[str, str]]] = {
 """The paper's names of a planner with settings."""
 
 
+def is_bound(label: str) -> bool:
+    """Whether a planner, named as in a table (``clairvoyant[restarts=3]``), is a bound and no competitor."""
+    entry = PLANNERS.get(label.partition("[")[0])
+    return entry is not None and entry.is_bound
+
+
 class PlannerSpec(NamedTuple):
     """A planner with its settings, as a user names it; can be sent to another process."""
 

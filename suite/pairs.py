@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import pandas as pd
 
+from planners import is_bound
 from suite.errors import SuiteError
 from suite.statistics import holm, mcnemar_p
 
@@ -30,7 +31,7 @@ class Pair(NamedTuple):
 
 
 def compare_in_pairs(trials: pd.DataFrame, reference: str, verdict: str = "per_step") -> pd.DataFrame:
-    """Test every planner against ``reference``.
+    """Test every planner against ``reference``, but for bounds, which do not compete.
 
     Args:
         trials: Frame of trial rows.
@@ -58,6 +59,8 @@ def _pairs(trials: pd.DataFrame, reference: str, success: str) -> Iterator[Pair]
         family, n_obstacles = str(group["family"].iloc[0]), int(group["n_obstacles"].iloc[0])
         won = group.pivot_table(index="scenario_hash", columns="planner", values=success, aggfunc="first")
         for label in won.columns.drop(reference) if reference in won else ():
+            if is_bound(label):
+                continue
             both = won[[label, reference]].dropna().astype(bool)
             only_planner = int((both[label] & ~both[reference]).sum())
             only_reference = int((both[reference] & ~both[label]).sum())

@@ -2,14 +2,19 @@
 
 Failures stay in: success rates and planning times are over all trials. How long, how far and how smooth a motion was
 can only be said of motions that reached the goal; those columns are medians over them, and their number is a column.
+
+A bound (a planner that knows the true motion) shows what is possible. It stands below the others, and every success is
+also given as a share of its own, over the scenarios that both were tried on.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import pandas as pd
 
+from planners import is_bound
 from suite.columns import VERDICTS
 from suite.statistics import wilson_interval
 
@@ -27,18 +32,29 @@ def summarize(trials: pd.DataFrame, planners: Sequence[str] = ()) -> pd.DataFram
         planners: Labels in the order in which they are to appear; others follow by name.
     """
     order = {label: position for position, label in enumerate(planners)}
-    rows = [dict(zip(GROUP, key, strict=True)) | _summary(group) for key, group in trials.groupby(GROUP, sort=False)]
-    rows.sort(
-        key=lambda row: (*(row[name] for name in GROUP[:2]), order.get(str(row["planner"]), len(order)), row["planner"])
-    )
-    return pd.DataFrame(rows)
+    rows = []
+    for condition, among in trials.groupby(GROUP[:2], sort=False):
+        bounds = among[among["planner"].map(is_bound)]
+        rows += [
+            dict(zip(GROUP, (*condition, label), strict=True)) | _summary(group, bounds)
+            for label, group in among.groupby("planner", sort=False)
+        ]
+    return pd.DataFrame(sorted(rows, key=lambda row: _rank(row, order)))
 
 
-def _summary(group: pd.DataFrame) -> dict[str, object]:
+def _rank(row: dict[str, Any], order: dict[str, int]) -> tuple[Any, ...]:
+    """Sorts rows: conditions, then planners as asked for, then bounds."""
+    label = row["planner"]
+    return *(row[name] for name in GROUP[:2]), row["is_bound"], order.get(label, len(order)), label
+
+
+def _summary(group: pd.DataFrame, bounds: pd.DataFrame) -> dict[str, object]:
     reached = group[group["outcome"] == "reached"]
-    summary: dict[str, object] = {"trials": len(group)}
+    summary: dict[str, object] = {"is_bound": is_bound(group["planner"].iloc[0]), "trials": len(group)}
     for verdict in VERDICTS:
         summary |= _success(group[f"success_{verdict}"], f"success_{verdict}")
+    for verdict in VERDICTS:
+        summary[f"success_{verdict}_of_bound_percent"] = _share(group, bounds, f"success_{verdict}")
     return summary | {
         "planning_time_mean_s": group["planning_time_s"].mean(),
         "planning_time_median_s": group["planning_time_s"].median(),
@@ -49,6 +65,19 @@ def _summary(group: pd.DataFrame) -> dict[str, object]:
         "smoothness_paper_median_rad": reached["smoothness_paper_rad"].median(),
         "errors": int(group["outcome"].isin(ERRORS).sum()),
     }
+
+
+def _share(group: pd.DataFrame, bounds: pd.DataFrame, success: str) -> float:
+    """Successes in percent of those shown to be possible; NaN for bounds and where none was shown.
+
+    A share above 100 % is no error: a bound that fails proves nothing, and another planner may succeed there.
+    """
+    possible = bounds.dropna(subset=[success]).groupby("scenario_hash")[success].any()
+    common = group[group["scenario_hash"].isin(possible.index)]
+    shown = int(possible[possible.index.isin(common["scenario_hash"])].sum())
+    if is_bound(group["planner"].iloc[0]) or not shown:
+        return float("nan")
+    return 100 * int(common[success].sum()) / shown
 
 
 def _success(verdicts: pd.Series[bool], name: str) -> dict[str, float]:

@@ -15,10 +15,11 @@ Format = Literal["markdown", "csv", "latex"]
 
 NOTES = """\
 Success in percent of all trials with its 95 % Wilson interval; each verdict is stricter than the one before: per step
-(no collision at whole seconds), swept (at no instant), executable (swept, within bending rate and tip speed). Planning
-time is the sum over a trial's solves: mean / median over all trials. Solve is the median of the trials' median solves.
-Arrival, tip path and smoothness S are medians over the trials that reached the goal. Errors are trials in which the
-planner failed as a program: it raised, crashed or hung."""
+(no collision at whole seconds), swept (at no instant), executable (swept, within bending rate and tip speed). A bound
+knows the true motion and is not compared; "of bound" gives successes in percent of its, one verdict after another.
+Planning time is the sum over a trial's solves: mean / median over all trials. Solve is the median of the trials' median
+solves. Arrival, tip path and smoothness S are medians over the trials that reached the goal. Errors are trials in which
+the planner failed as a program: it raised, crashed or hung."""
 
 
 class Shown(NamedTuple):
@@ -36,25 +37,24 @@ def as_csv(frame: pd.DataFrame) -> str:
 
 def shown_columns(summary: pd.DataFrame) -> list[Shown]:
     """The columns that people see of a summary; those that say nothing are left out."""
+    published = "published_success_percent" in summary
     columns = [
+        Shown("family", lambda row: str(row.family)) if len(set(summary["family"])) > 1 else None,
         Shown("obstacles", lambda row: str(row.n_obstacles)),
-        Shown("planner", lambda row: str(row.planner)),
+        Shown("planner", lambda row: f"{row.planner} (bound)" if row.is_bound else str(row.planner)),
         Shown("n", lambda row: str(row.trials)),
+        Shown("errors", lambda row: str(row.errors)) if summary["errors"].any() else None,
+        Shown("published %", lambda row: _number(row.published_success_percent)) if published else None,
         *(Shown(f"{verdict.replace('_', ' ')} %", _success(verdict)) for verdict in VERDICTS),
+        Shown("of bound %", _shares) if summary["is_bound"].any() else None,
         Shown("planning s", _planning),
+        Shown("published s", lambda row: _number(row.published_time_s)) if published else None,
         Shown("solve ms", lambda row: _number(1e3 * row.solve_median_s)),
         Shown("arrival s", lambda row: _number(row.arrival_median_s)),
         Shown("tip path m", lambda row: _number(row.tip_path_length_median_m)),
         Shown("S rad", lambda row: _number(row.smoothness_paper_median_rad)),
     ]
-    if "published_success_percent" in summary:
-        columns.insert(3, Shown("published %", lambda row: _number(row.published_success_percent)))
-        columns.insert(8, Shown("published s", lambda row: _number(row.published_time_s)))
-    if summary["errors"].any():
-        columns.insert(3, Shown("errors", lambda row: str(row.errors)))
-    if len(set(summary["family"])) > 1:
-        columns.insert(0, Shown("family", lambda row: str(row.family)))
-    return columns
+    return [column for column in columns if column is not None]
 
 
 def cells(summary: pd.DataFrame) -> tuple[list[str], list[list[str]]]:
@@ -116,6 +116,11 @@ def _success(verdict: str) -> Callable[[Any], str]:
         return "-" if pd.isna(percent) else f"{percent:.0f} [{low:.0f}, {high:.0f}]"
 
     return cell
+
+
+def _shares(row: Any) -> str:
+    shares = [getattr(row, f"success_{verdict}_of_bound_percent") for verdict in VERDICTS]
+    return "-" if pd.isna(shares).all() else " / ".join("-" if pd.isna(share) else f"{share:.0f}" for share in shares)
 
 
 def _planning(row: Any) -> str:

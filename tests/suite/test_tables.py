@@ -78,6 +78,36 @@ def test_groups_do_not_mix() -> None:
     ]  # fmt: skip
 
 
+def test_a_bound_stands_last_and_successes_are_shares_of_its() -> None:
+    trials = make_trials(clairvoyant=[True, True, True, False], rrt=[True, False, False, False], pf=[True] * 4)
+    summary = summarize(trials, ["clairvoyant", "rrt", "pf"]).set_index("planner")
+    assert list(summary.index) == ["rrt", "pf", "clairvoyant"]
+    assert summary["is_bound"].tolist() == [False, False, True]
+    shares = summary["success_per_step_of_bound_percent"]
+    assert shares["rrt"] == pytest.approx(100 / 3)
+    assert shares["pf"] == pytest.approx(400 / 3)  # what a bound fails at is not shown to be impossible
+    assert math.isnan(shares["clairvoyant"])
+    assert math.isnan(summary.loc["rrt", "success_swept_of_bound_percent"])  # nobody was judged
+    text = render(summary.reset_index(), "markdown")
+    assert "clairvoyant (bound)" in text
+    assert "| 33 / - / - " in text
+    assert "of bound" not in render(summarize(make_trials(pf=[True])), "markdown")
+
+
+def test_shares_are_over_the_scenarios_that_both_were_tried_on() -> None:
+    rows = [make_row("clairvoyant", k, success=True) for k in range(2)]
+    rows += [make_row("clairvoyant[restarts=1]", 2, success=True)]  # a second bound shows more to be possible
+    rows += [make_row("pf", k, success=k != 1) for k in range(5)]
+    summary = summarize(trials_frame(rows)).set_index("planner")
+    assert summary.loc["pf", "success_per_step_of_bound_percent"] == pytest.approx(200 / 3)
+
+
+def test_a_bound_is_compared_in_pairs_only_when_asked_for() -> None:
+    trials = make_trials(clairvoyant=[True, True], rrt=[True, False], pf=[True, False])
+    assert set(compare_in_pairs(trials, "rrt")["planner"]) == {"pf"}
+    assert set(compare_in_pairs(trials, "clairvoyant")["planner"]) == {"rrt", "pf"}
+
+
 def test_trials_survive_the_csv(tmp_path) -> None:
     trials = make_trials(pf=[True, False], rrt=[False, True])
     (tmp_path / "trials.csv").write_text(trials_csv(trials))
