@@ -10,9 +10,10 @@ import multiprocessing
 import signal
 import time
 from collections.abc import Callable, Collection, Iterable, Iterator
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from itertools import islice
+from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection, wait
 from typing import Any
 
@@ -76,7 +77,8 @@ class _Worker:
     def __init__(self, job: Job, task: TrialTask) -> None:
         self.pipe, theirs = _CONTEXT.Pipe()
         self._process = _CONTEXT.Process(target=_serve, args=(theirs, job), daemon=True)
-        self._process.start()
+        with _interrupts_held():
+            self._process.start()
         theirs.close()  # the death of the process now shows as the end of our side
         self._job = job
         self._is_ready = False
@@ -125,6 +127,20 @@ class _Worker:
         return failed_trial(self.task, outcome, message, time.monotonic() - self._started_s)
 
 
+@contextmanager
+def _interrupts_held() -> Iterator[None]:
+    """Let a process that is started here never see Ctrl-C; one that comes meanwhile is ours as soon as this ends.
+
+    Ctrl-C reaches the whole group, and a worker that it meets among its first imports would print a traceback.
+    """
+    resource_tracker.ensure_running()  # started with the first process otherwise, and it lets signals through again
+    held = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, held)
+
+
 def _due(crew: Collection[_Worker]) -> list[_Worker]:
     """Wait until at least one worker has something to say or is late; return those."""
     patience_s = min(worker.seconds_left for worker in crew)
@@ -135,7 +151,6 @@ def _due(crew: Collection[_Worker]) -> list[_Worker]:
 
 def _serve(pipe: Connection[Any, Any], job: Job) -> None:
     """The life of a worker process: say that it is ready, then answer each task with its result."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; the parent decides what it means
     job.prepare()
     with suppress(EOFError, OSError):  # the parent has closed the pipe or is gone
         pipe.send(None)

@@ -18,8 +18,6 @@ from planners import is_bound
 from suite.columns import VERDICTS
 from suite.statistics import wilson_interval
 
-GROUP = ["family", "n_obstacles", "planner"]
-
 ERRORS = ("planner_error", "planner_hung", "invalid_scenario")
 """Outcomes that say something about the software rather than about the method."""
 
@@ -32,20 +30,16 @@ def summarize(trials: pd.DataFrame, planners: Sequence[str] = ()) -> pd.DataFram
         planners: Labels in the order in which they are to appear; others follow by name.
     """
     order = {label: position for position, label in enumerate(planners)}
-    rows = []
-    for condition, among in trials.groupby(GROUP[:2], sort=False):
+    rows: list[dict[str, Any]] = []
+    for (family, n_obstacles), among in trials.groupby(["family", "n_obstacles"], sort=False):
         bounds = among[among["planner"].map(is_bound)]
         rows += [
-            dict(zip(GROUP, (*condition, label), strict=True)) | _summary(group, bounds)
+            {"family": family, "n_obstacles": n_obstacles, "planner": label, **_summary(group, bounds)}
             for label, group in among.groupby("planner", sort=False)
         ]
-    return pd.DataFrame(sorted(rows, key=lambda row: _rank(row, order)))
-
-
-def _rank(row: dict[str, Any], order: dict[str, int]) -> tuple[Any, ...]:
-    """Sorts rows: conditions, then planners as asked for, then bounds."""
-    label = row["planner"]
-    return *(row[name] for name in GROUP[:2]), row["is_bound"], order.get(label, len(order)), label
+    position = [order.get(str(row["planner"]), len(order)) for row in rows]
+    by = ["family", "n_obstacles", "is_bound", "position", "planner"]
+    return pd.DataFrame(rows).assign(position=position).sort_values(by, ignore_index=True).drop(columns="position")
 
 
 def _summary(group: pd.DataFrame, bounds: pd.DataFrame) -> dict[str, object]:
