@@ -14,6 +14,7 @@ for library in ("OMP", "OPENBLAS", "MKL"):
 def main() -> None:
     """Run the parts asked for, all by default."""
     from benchmarks.boundary import boundary
+    from benchmarks.continuous import solve_times
     from benchmarks.planning import against_literal, growth
     from benchmarks.suite_runs import memory, step, throughput
     from benchmarks.timing import render
@@ -24,6 +25,7 @@ def main() -> None:
         "validity": ("State validity: default arm, 6 spheres, one core", validity),
         "boundary": ("The OMPL boundary", boundary),
         "growth": ("Construction of the temporal graph", growth),
+        "continuous": ("Solve times of temporal-ct, seed 0, n = 1, 3, 5, 6", solve_times),
         "throughput": ("The suite", throughput),
         "step": ("What a step of a trial takes", step),
         "memory": ("Memory", memory),

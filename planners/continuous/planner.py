@@ -30,7 +30,7 @@ class SearchSettings(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     horizon_s: float = Field(default=120.0, gt=0, le=3600, description="latest arrival considered, from now")
-    branches: int = Field(default=300, ge=1, le=10**7, description="budget of a search, in branches of the tree")
+    branches: int = Field(default=500, ge=1, le=10**7, description="budget of a search, in branches of the tree")
     refinements: int = Field(default=15, ge=0, le=10**7, description="branches after the goal was first reached")
     enough: float = Field(default=1.1, ge=1, description="no refining below this multiple of the straight way's time")
     bounces: int = Field(default=5, ge=0, le=1000, description="new postures a blocked branch tries")
@@ -41,7 +41,7 @@ class SearchSettings(BaseModel):
 class ContinuousSettings(SearchSettings):
     """Settings of ``temporal-ct``."""
 
-    retry_branches: int = Field(default=40, ge=1, le=10**7, description="the budget after a solve that failed")
+    retry_branches: int = Field(default=15, ge=1, le=10**7, description="the budget after a solve that failed")
     margin: float = Field(default=2.0, ge=0, le=10, description="error bounds kept clear of, in standard deviations")
 
 

@@ -1,0 +1,66 @@
+"""What ``temporal-ct`` takes on its way, as it arises in trials: every solve, and every step's whole decision."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+from benchmarks.timing import Line
+from planners import PLANNERS, Session, parse_planner
+from scenarios import Scenario, generate
+from suite.execution import Execution
+from suite.observation import Observer
+from suite.trial import TrialTask
+
+PLANNER = "temporal-ct"
+
+
+def solve_times(quick: bool) -> list[Line]:
+    """Wall time of every solve over trials of the paper's family at n = 1, 3, 5, 6, without and with noise.
+
+    Wall time, since a step of the arm does not wait for a busy machine either.
+    """
+    drawn = [scenario for n in (1, 3, 5, 6) for scenario in generate("orbit", n, 5 if quick else 100, seed=0)]
+    _decide(_task(drawn[0], 2.0))  # compiles
+    return [
+        line
+        for noise_mm, targets in ((0.0, ("<= 2", "<= 50")), (2.0, ("", "")))
+        for line in _lines([_decide(_task(scenario, noise_mm)) for scenario in drawn], f"{noise_mm:g} mm", targets)
+    ]
+
+
+def _task(scenario: Scenario, noise_mm: float) -> TrialTask:
+    spec = parse_planner(PLANNER)
+    return TrialTask(scenario, spec, PLANNERS[spec.name].predictor, limits=False, seed=0, noise_mm=noise_mm)
+
+
+def _lines(trials: list[tuple[list[float], list[float]]], noise: str, targets: tuple[str, str]) -> list[Line]:
+    solves, decisions = (1e3 * np.concatenate(times) for times in zip(*trials, strict=True))
+    median, late = (float(np.percentile(solves, share)) for share in (50, 99))
+    return [
+        Line(f"noise {noise}: solves", len(solves), ""),
+        Line(f"noise {noise}: a solve, median", median, "ms", targets[0]),
+        Line(f"noise {noise}: a solve, 99th percentile", late, "ms", targets[1]),
+        Line(f"noise {noise}: a solve, longest", float(solves.max()), "ms"),
+        Line(f"noise {noise}: observe, predict, check or solve, median", float(np.median(decisions)), "ms"),
+        Line(f"noise {noise}: the same, 99th percentile", float(np.percentile(decisions, 99)), "ms"),
+    ]
+
+
+def _decide(task: TrialTask) -> tuple[list[float], list[float]]:
+    """Seconds of every solve of a trial, and of every step's decision."""
+    scenario = task.scenario
+    session = Session(task.spec, scenario, predictor=task.predictor, limits=task.limits, seed=task.trial_seed)
+    observer, execution = Observer(task), Execution(scenario)
+    solves, decisions = list[float](), list[float]()
+    while not execution.has_arrived and execution.now_s < scenario.time_limit_s:
+        started = time.perf_counter()
+        observation, rest = observer.until(execution.now_s), execution.rest
+        if rest is None or not session.still_valid(*rest, observation):
+            plan = session.plan(execution.q, execution.now_s, observation)
+            solves.append(plan.solve_time_s)
+            execution.take(plan.times_s, plan.configurations_rad)
+        decisions.append(time.perf_counter() - started)
+        execution.step()
+    return solves, decisions
