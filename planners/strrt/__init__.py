@@ -17,7 +17,7 @@ from planners.problem import SpaceTimeProblem, TimedPath
 from planners.strrt import _kernels
 from planners.strrt.region import _kernels as region
 from planners.strrt.trees import _kernels as trees
-from scenarios.arm import FloatArray
+from scenarios.arm import ContinuumArm, FloatArray
 from scenarios.collision import CONTACT_TOLERANCE_M
 from scenarios.kernels.kinematics import ARC_SIZE
 
@@ -82,6 +82,18 @@ class Workspace(NamedTuple):
         return cls(tree(), tree(), work)
 
 
+def numbers_of(arm: ContinuumArm) -> trees.Arm:
+    """The numbers of ``arm`` with its rates cut by the reserve."""
+    return trees.Arm(
+        arm.section_length_m,
+        arm.radius_m,
+        arm.max_bend_rad,
+        (1.0 - RATE_RESERVE) * arm.max_bend_rate_rad_s,
+        (1.0 - RATE_RESERVE) * arm.max_tip_speed_m_s,
+        CONTACT_TOLERANCE_M,
+    )
+
+
 class STRRTPlanner(ArmPlanner):
     """``strrt``: searches anew at every solve."""
 
@@ -89,25 +101,18 @@ class STRRTPlanner(ArmPlanner):
         """Plan on ``problem``; random numbers derive from OMPL's seed."""
         super().__init__(problem, "strrt")
         arm = problem.query.arm
-        self._settings = settings
-        self._arm = trees.Arm(
-            arm.section_length_m,
-            arm.radius_m,
-            arm.max_bend_rad,
-            (1.0 - RATE_RESERVE) * arm.max_bend_rate_rad_s,
-            (1.0 - RATE_RESERVE) * arm.max_tip_speed_m_s,
-            CONTACT_TOLERANCE_M,
-        )
-        self._workspace = Workspace.of(arm.n_sections, settings.nodes)
+        self._settings, self._arm = settings, numbers_of(arm)
+        self.workspace = Workspace.of(arm.n_sections, settings.nodes)
+        """The trees of the latest search."""
         self._rng = np.array([ou.RNG().uniformInt(0, 2**31 - 1)], np.uint64)
 
     def search(self, q: FloatArray, now_s: float, stop: Callable[[], bool]) -> TimedPath | None:
         """The path that arrives first; without one, the one that stays free longest."""
-        configurations, earliest_s = self.getProblemDefinition().getGoal().reachable
+        configurations = self.getProblemDefinition().getGoal().configurations
         if len(configurations) == 0:
             return None
-        settings, space = self._settings, self._workspace
-        least_s = (earliest_s - now_s) / (1.0 - RATE_RESERVE)
+        settings, space = self._settings, self.workspace
+        least_s = np.full(len(configurations), np.nan)
         goals = region.Goals(configurations, self.problem.query.arm.tips(configurations), least_s)
         parameters = region.Parameters(
             settings.p_goal,
@@ -144,7 +149,7 @@ class STRRTPlanner(ArmPlanner):
 
     def _path(self) -> TimedPath | None:
         """The best path in the trees; None where the start tree has nothing but its root."""
-        start_tree, goal_tree, _ = self._workspace
+        start_tree, goal_tree, _ = self.workspace
         joined = int(_kernels.best_join(goal_tree))
         node = int(goal_tree.joined[joined] if joined >= 0 else np.argmax(start_tree.times[: start_tree.size[0]]))
         before = _ancestry(start_tree, node)[::-1]

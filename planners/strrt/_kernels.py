@@ -145,10 +145,12 @@ def search(first, last, b, p, rng, goals, arm, world, start_tree, goal_tree, wor
         b = update_goal_region(b, p, goal_tree)
         b = count_sample(b)
         if goal_tree.size[0] == 0 or uniform(rng) <= p.p_goal:
-            root = sample_goal(b, p, rng, goals, start_tree.times[0], arm, world, goal_tree, work)
+            root = sample_goal(b, p, rng, goals, arm, world, start_tree, goal_tree, work)
             if root >= 0:
                 goal_tree.joined[root] = connect(start_tree, True, goal_tree, root, p, arm, world, work)
                 b = update_solution(b, goals, arm, start_tree, goal_tree, work)
+        if goal_tree.size[0] == 0:
+            continue
         earliest, time, latest = sample_conditionally(b, rng, arm, start_tree, goal_tree, work)
         if math.isnan(time):
             continue

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from planners._kernels import clearance
+from planners._kernels import clearance, least_duration
 from planners.randomness._kernels import random_posture, uniform
 from planners.strrt.trees._kernels import add_node, least_time, place_tip
 from scenarios.kernels.jit import kernel
@@ -45,14 +45,14 @@ class Bound(NamedTuple):
 
 
 class Goals(NamedTuple):
-    """The goal configurations that can be reached in time."""
+    """The goal configurations."""
 
     states: np.ndarray
     """Shape (K, 2n), [rad]."""
     tips: np.ndarray
     """Shape (K, 3), [m]."""
     least: np.ndarray
-    """Least duration of the straight motion from the start, shape (K,), [s]."""
+    """Least duration of the straight motion from the start, shape (K,), [s]; NaN until it is first needed."""
 
 
 @kernel
@@ -93,10 +93,13 @@ def update_goal_region(b, p, goal_tree):
 
 
 @kernel
-def sample_goal(b, p, rng, goals, t_start, arm, world, goal_tree, work):
+def sample_goal(b, p, rng, goals, arm, world, start_tree, goal_tree, work):
     """Algorithm 4: a goal at a time of arrival becomes a root of the goal tree; returns it, -1 where it is not free."""
     g = int(goals.least.shape[0] * uniform(rng))
-    least, old = goals.least[g], uniform(rng) < b.batch_probability
+    if math.isnan(goals.least[g]):
+        q = start_tree.states[0]
+        goals.least[g] = least_duration(q, goals.states[g], arm.section_length, arm.bend_rate, arm.tip_speed)
+    t_start, least, old = start_tree.times[0], goals.least[g], uniform(rng) < b.batch_probability
     from_s, until_s = least, least * b.time_range
     if b.t_max < math.inf:
         until_s = b.t_max - t_start
