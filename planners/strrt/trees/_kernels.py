@@ -183,7 +183,8 @@ def grow(tree, forward, node, time, limit, reach, weight, arm, world, work):
     least = least_time(q, tree.tips[node], work.state, work.tip, arm)
     share = min(1.0, reach / distance(least, abs(time - t), weight))
     for i in range(q.shape[0]):
-        work.step[i] = q[i] + share * (work.state[i] - q[i])
+        # The whole way ends at the very state: where trees join, it is one.
+        work.step[i] = q[i] + share * (work.state[i] - q[i]) if share < 1.0 else work.state[i]
     there = t + share * (time - t) if share < 1.0 else time
     room = abs((time if share < 1.0 else limit) - t)
     if straight_time(q, tree.tips[node], work.step, arm, work) > room:
