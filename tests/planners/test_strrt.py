@@ -67,9 +67,9 @@ def test_a_path_leads_from_the_start_to_the_goal_by_valid_motions(scenario: Scen
     assert audit(scenario, found.times_s, found.configurations_rad).executable.success
 
 
-@every_scenario
+@pytest.mark.parametrize("scenario", [*SCENARIOS, UNSOLVED], ids=lambda scenario: scenario.id)
 def test_every_edge_of_both_trees_goes_forward_in_time_and_is_valid(scenario: Scenario) -> None:
-    _, planner, used = searched(scenario, "iterations=60,refinements=0")
+    _, planner, used = searched(scenario, "iterations=300,refinements=20")
     start_tree, goal_tree, _ = planner.workspace
     check, edges = used._problem.validator.check, 0
     for k in nodes_of(start_tree):
