@@ -16,6 +16,7 @@ def main() -> None:
     from benchmarks.boundary import boundary
     from benchmarks.continuous import solve_times
     from benchmarks.planning import against_literal, growth
+    from benchmarks.strrt import against_ompl
     from benchmarks.suite_runs import memory, step, throughput
     from benchmarks.timing import render
     from benchmarks.validity import validity
@@ -29,6 +30,7 @@ def main() -> None:
         "throughput": ("The suite", throughput),
         "step": ("What a step of a trial takes", step),
         "memory": ("Memory", memory),
+        "strrt": ("ST-RRT* against that of OMPL 1.7.0, future known", against_ompl),
     }
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
     parser.add_argument("parts", nargs="*", metavar="part", help=f"which to run: {', '.join(parts)}; all by default")

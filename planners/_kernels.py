@@ -96,11 +96,17 @@ def within_rates(q0, q1, duration, section_length, bend_rate, tip_speed):
 
 
 @kernel
+def least_duration(q0, q1, section_length, bend_rate, tip_speed):
+    """Shortest time [s] of the straight motion q0 -> q1 at the given rates."""
+    return max(largest_bend_change(q0, q1) / bend_rate, fastest_tip(q0, q1, section_length) / tip_speed)
+
+
+@kernel
 def least_durations(q, goals, section_length, bend_rate, tip_speed):
-    """Shortest time [s] of the straight motion from ``q`` (2n,) to each of ``goals`` (K, 2n) at the given rates."""
+    """``least_duration`` from ``q`` (2n,) to each of ``goals`` (K, 2n): (K,) [s]."""
     out = np.empty(goals.shape[0])
     for k in range(goals.shape[0]):
-        out[k] = max(largest_bend_change(q, goals[k]) / bend_rate, fastest_tip(q, goals[k], section_length) / tip_speed)
+        out[k] = least_duration(q, goals[k], section_length, bend_rate, tip_speed)
     return out
 
 

@@ -178,6 +178,11 @@ class TipGoal(ob.GoalSampleableRegion):
         """Whether a goal configuration is known."""
         return len(self.reachable[0]) > 0
 
+    @property
+    def configurations(self) -> FloatArray:
+        """Goal configurations (K, dof) [rad], whether they can be reached in time or not."""
+        return self._goals.configurations
+
     @functools.cached_property
     def reachable(self) -> tuple[FloatArray, FloatArray]:
         """Goal configurations (K, dof) [rad] that can be reached in time, and how early each can (K,) [s].

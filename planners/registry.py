@@ -19,6 +19,7 @@ from planners.potential_field import PotentialFieldPlanner, PotentialFieldSettin
 from planners.problem import SpaceTimeProblem
 from planners.roadmap import PRMPlanner, PRMSettings
 from planners.sampling import RRTSettings, TreeSettings, build_rrt, build_rrtconnect
+from planners.strrt import STRRTPlanner, STRRTSettings
 from planners.temporal.planner import TemporalPlanner, TemporalSettings
 from scenarios.spec import SpecError, known_name, parse_settings, parse_spec
 from scenarios.spec import split_specs as split_texts
@@ -104,6 +105,19 @@ PLANNERS: dict[str, PlannerEntry] = {
             "Kuffner and LaValle, ICRA 2000",
             TreeSettings,
             build_rrtconnect,
+            "while_valid",
+            lambda s: float(s.horizon_s),
+            prediction_step_s=0.25,
+            prediction_margin=1.0,
+            largest_bound_m=LARGEST_BOUND_M,
+            predictor="portfolio",
+        ),
+        PlannerEntry(
+            "strrt",
+            "ST-RRT* in space-time, replanned when the prediction invalidates the path",
+            "Grothe et al., ICRA 2022",
+            STRRTSettings,
+            STRRTPlanner,
             "while_valid",
             lambda s: float(s.horizon_s),
             prediction_step_s=0.25,

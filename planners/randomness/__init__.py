@@ -1,0 +1,1 @@
+"""Random numbers for compiled searches."""
