@@ -20,6 +20,10 @@ GOAL_SHARE = 0.9
 """Share of the goal tolerance at which the tip is to arrive."""
 MARGIN_M = 5e-5
 """Clearance kept beyond the validator's: obstacles go straight between samples here, not in truth."""
+PRESSING_S = 60.0
+"""An arm that is safe for less than this, with no path to the goal, goes on searching in earnest."""
+FADING = 0.8
+"""Its budget from one failed search to the next: the tree has tried much of what there is, and things change."""
 LARGEST_BOUND_M = 0.005
 """Error bounds are taken for no more than this: what is less certain will have been observed again by then."""
 
@@ -41,7 +45,9 @@ class SearchSettings(BaseModel):
 class ContinuousSettings(SearchSettings):
     """Settings of ``temporal-ct``."""
 
-    retry_branches: int = Field(default=15, ge=1, le=10**7, description="the budget after a solve that failed")
+    retry_branches: int = Field(
+        default=15, ge=1, le=10**7, description="the budget of an arm that is safe, but has no path to the goal"
+    )
     margin: float = Field(default=2.0, ge=0, le=10, description="error bounds kept clear of, in standard deviations")
 
 
@@ -102,11 +108,12 @@ class ContinuousPlanner(TreePlanner):
         self._branches, self._retry_branches = settings.branches, settings.retry_branches
         self._margin = settings.margin
         self._last: Found | None = None
+        self._failures = 0
 
     def search(self, q: FloatArray, now_s: float, stop: Callable[[], bool]) -> TimedPath | None:
         """A path to the goal with as wide a margin as can be had; else the one that stays safe longest."""
         trunk = self._rest_of_last_path(q, now_s)
-        branches = self._branches if self._last is None or self._last.reaches else self._retry_branches
+        branches = self._budget(now_s)
         found: Found | None = None
         for world in self._worlds():
             if found is not None and (found.reaches or stop()):
@@ -117,7 +124,14 @@ class ContinuousPlanner(TreePlanner):
                 found = tried
             branches = max(self._retry_branches, branches // 3)
         self._last = found
+        self._failures = 0 if found is not None and found.reaches else self._failures + 1
         return found.path if found is not None and len(found.path.times_s) > 1 else None
+
+    def _budget(self, now_s: float) -> int:
+        """Branches of the next search: all of them at first, few while the arm is safe without a path to the goal."""
+        if self._last is not None and not self._last.reaches and self._last.path.times_s[-1] >= now_s + PRESSING_S:
+            return self._retry_branches
+        return max(self._retry_branches, int(self._branches * FADING**self._failures))
 
     def _worlds(self) -> Iterator[SampledWorld]:
         """The predicted obstacles with the whole margin, half of it and none."""

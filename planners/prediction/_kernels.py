@@ -9,6 +9,8 @@ from scenarios.kernels.jit import kernel
 LEAST_BOUND_M = 1e-9
 LEAST_SCORE = 1e-18
 """Bounds [m] and scores [m^2/s^2] below these are as good as none."""
+SPURT = 2.0
+"""Times the fastest speed seen: what an obstacle may yet reach."""
 
 
 @kernel
@@ -303,3 +305,33 @@ def blend(centers, bounds, scores):
                 out_bounds[j, h] += weights[k] * (bounds[k][j, h] ** 2 + 0.5 * apart)
             out_bounds[j, h] = math.sqrt(out_bounds[j, h])
     return out_centers, out_bounds
+
+
+@kernel
+def keep_within_reach(times, positions, gap, ahead, bounds, centers):
+    """Pull forecasts back to where an obstacle can get from where it was last seen.
+
+    Polynomials run away: what accelerates now would be metres off in a minute.
+
+    Args:
+        times: Of the observations, shape (N,), [s].
+        positions: Observed centres, shape (N, m, 3), [m]; nan where lost.
+        gap: Steps over which the fastest speed is looked for.
+        ahead: Times after the last observation, shape (T,), [s].
+        bounds: On the forecasts' errors, shape (m, T), [m].
+        centers: The forecasts, shape (m, T, 3), [m]; changed.
+    """
+    for j in range(positions.shape[1]):
+        last = times.shape[0] - 1
+        while last > 0 and math.isnan(positions[last, j, 0]):
+            last -= 1
+        speed = SPURT * fastest(times, positions[:, j], gap)
+        for h in range(ahead.shape[0]):
+            reach = bounds[j, 0] + speed * (times[-1] - times[last] + ahead[h])
+            away = 0.0
+            for c in range(3):
+                away += (centers[j, h, c] - positions[last, j, c]) ** 2
+            if away > reach * reach:
+                share = reach / math.sqrt(away)
+                for c in range(3):
+                    centers[j, h, c] = positions[last, j, c] + share * (centers[j, h, c] - positions[last, j, c])

@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from planners.prediction._kernels import blend
-from planners.prediction.model import Model
+from planners.prediction._kernels import blend, keep_within_reach
+from planners.prediction.model import GAP, Model
 from planners.prediction.observation import Observation
 from planners.prediction.predictor import Forecast, Predictor
 from scenarios.arm import FloatArray
@@ -25,4 +25,6 @@ class PortfolioPredictor(Predictor):
         """See ``Predictor.forecast``."""
         centers, bounds, scores = zip(*(model.judged(observation, times_s) for model in self._models), strict=True)
         mean, spread = blend(centers, bounds, scores)
+        seen = observation.times_s
+        keep_within_reach(seen, observation.positions_m, GAP, times_s - seen[-1], spread, mean)
         return Forecast(mean.transpose(1, 0, 2), spread.T)

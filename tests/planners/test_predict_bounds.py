@@ -10,7 +10,7 @@ from strategies import seeds
 
 from planners import PREDICTORS, Observation
 from planners.prediction import Predictor
-from planners.prediction._kernels import blend, growth, invert, solve
+from planners.prediction._kernels import SPURT, blend, growth, invert, keep_within_reach, solve
 from scenarios import Scenario, generate
 
 HORIZONS_S = np.array([1.0, 2.0, 3.0, 5.0, 8.0, 12.0, 20.0])
@@ -138,3 +138,23 @@ def test_a_blend_is_a_weighted_mean_that_a_perfect_model_wins() -> None:
     variance = weights @ (np.array([0.01, 0.02, 0.04])[:, None] ** 2 + 0.5 * apart)
     np.testing.assert_allclose(spread[0], np.sqrt(variance), rtol=1e-6)
     np.testing.assert_allclose(mean[1], centers[0][1], atol=1e-12)
+
+
+@given(seed=seeds, count=st.integers(2, 12), gap=st.integers(1, 5), lost=st.integers(0, 3))
+def test_no_obstacle_is_predicted_to_outrun_what_it_was_seen_to_do(seed: int, count: int, gap: int, lost: int) -> None:
+    rng = np.random.default_rng(seed)
+    times, ahead = np.arange(float(count)), np.array([0.5, 2.0, 20.0])
+    seen = rng.normal(size=(count, 2, 3))
+    seen[max(1, count - lost) :, 1] = np.nan
+    bounds, centers = rng.uniform(0.0, 1.0, size=(2, 3)), rng.normal(scale=50.0, size=(2, 3, 3))
+    kept = centers.copy()
+    keep_within_reach(times, seen, gap, ahead, bounds, kept)
+    for j in range(2):
+        known = np.flatnonzero(~np.isnan(seen[:, j, 0]))
+        last = known[-1]
+        pairs = [(min(k for k in known if k >= i - gap), i) for i in known]
+        speed = max([np.linalg.norm(seen[i, j] - seen[k, j]) / (i - k) for k, i in pairs if k < i], default=0.0)
+        reach = bounds[j, 0] + SPURT * speed * (times[-1] - times[last] + ahead)
+        away = centers[j] - seen[last, j]
+        share = np.minimum(1.0, reach / np.linalg.norm(away, axis=1))
+        np.testing.assert_allclose(kept[j], seen[last, j] + share[:, None] * away, atol=1e-9)
