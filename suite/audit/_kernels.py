@@ -184,10 +184,10 @@ def _look(q, t, soonest, smallest_before, section_length, arm_radius, truth, wor
     lay_out(q, section_length, CHORDS, work.nodes, work.bends)
     work.looks_left[0] -= 1
     sections, obstacles = work.bends.shape[0], truth.radii_m.shape[0]
-    smallest = math.inf
     # What was nearest at the last look comes first: next to it the rest hardly ever matters, and a bound suffices.
+    smallest, first = math.inf, work.nearest[0]
     for turn in range(obstacles):
-        j = (work.nearest[0] + turn) % obstacles
+        j = (first + turn) % obstacles
         x, y, z, speed, holds = obstacle_at(j, t, truth)
         reach = arm_radius + truth.radii_m[j]
         for i in range(sections):

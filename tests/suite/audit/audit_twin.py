@@ -81,7 +81,7 @@ def random_direction(rng):
 
 
 def random_motion(rng, duration_s=0.1, largest_gap_m=0.04):
-    """A fast motion that obstacles on orbits and tracks pass closely, or hit, somewhere on the way."""
+    """A fast motion that up to seven obstacles on orbits and tracks pass closely, or hit, somewhere on the way."""
     arm = ContinuumArm(n_sections=int(rng.integers(1, 4)))
     states = [random_bending(rng, arm.n_sections)]
     for _ in range(int(rng.integers(1, 4))):
@@ -90,8 +90,10 @@ def random_motion(rng, duration_s=0.1, largest_gap_m=0.04):
         bends = np.hypot(following[::2], following[1::2])
         states.append(following * np.repeat(np.minimum(1.0, np.pi / np.maximum(bends, 1e-9)), 2))
     times = np.concatenate([[0.0], np.sort(rng.uniform(0.0, duration_s, len(states) - 2)), [duration_s]])
+    # The more there are, the wider they may pass: some motions stay free of them all.
+    count = int(rng.integers(1, 8))
     obstacles = tuple(
-        _passing_obstacle(rng, arm, times, np.array(states), largest_gap_m) for _ in range(rng.integers(1, 3))
+        _passing_obstacle(rng, arm, times, np.array(states), largest_gap_m * count) for _ in range(count)
     )
     scenario = Scenario(id="random", arm=arm, start_rad=tuple(states[0]), goal_m=UNREACHABLE_M, obstacles=obstacles)
     return Motion(scenario, times, np.array(states))
