@@ -44,7 +44,9 @@ def load_scenarios(path: str | os.PathLike[str]) -> list[Scenario]:
     entries = _read(file)
     if not 1 <= len(entries) <= MAX_SCENARIOS:
         raise ScenarioError(f"{file}: found {len(entries)} scenarios, allowed 1 to {MAX_SCENARIOS}")
-    scenarios = [_validate(file, k, len(entries), entry) for k, entry in enumerate(entries)]
+    count = len(entries)
+    entries.reverse()  # taken from the end, each is gone when the next is read: a large file is not held twice
+    scenarios = [_validate(file, k, count, entries.pop()) for k in range(count)]
     names = [scenario.id for scenario in scenarios]
     if len(set(names)) < len(names):
         twice = next(name for name in names if names.count(name) > 1)

@@ -62,10 +62,10 @@ class Journal:
         values = [*complete_row(result.row).values(), _to_bytes(result)]
         self._db.execute(f"INSERT INTO trials ({_NAMES}, executed) VALUES ({marks})", values)
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> Iterator[Row]:
         """All rows, in no particular order."""
-        selected = self._db.execute(f"SELECT {_NAMES} FROM trials")
-        return [complete_row(dict(zip(COLUMN_NAMES, values, strict=True))) for values in selected]
+        for values in self._db.execute(f"SELECT {_NAMES} FROM trials"):
+            yield complete_row(dict(zip(COLUMN_NAMES, values, strict=True)))
 
     def executed(self) -> Iterator[Executed]:
         """What was executed, trial by trial, sorted as in the tables."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -22,13 +23,19 @@ def trials_frame(rows: Iterable[Row]) -> pd.DataFrame:
 
     Numbers are rounded as they are written: what is computed from the frame can be computed from ``trials.csv``.
     """
-    written = [{name: _as_written(value) for name, value in row.items()} for row in rows]
-    frame = pd.DataFrame(written, columns=list(COLUMN_NAMES)).astype({c.name: c.dtype for c in COLUMNS})
+    # Column by column: a list of rows as dictionaries would take several times the frame's memory.
+    values: dict[str, list[object]] = {name: [] for name in COLUMN_NAMES}
+    for row in rows:
+        for name, value in row.items():
+            values[name].append(_as_written(value))
+    frame = pd.DataFrame({column.name: pd.Series(values.pop(column.name), dtype=column.dtype) for column in COLUMNS})
     return frame.sort_values(SORTED_BY, ignore_index=True)
 
 
 def _as_written(value: object) -> object:
-    return float(FLOAT_FORMAT % value) if isinstance(value, float) else value
+    if isinstance(value, float):
+        return float(FLOAT_FORMAT % value)
+    return sys.intern(value) if isinstance(value, str) else value  # names and settings repeat in thousands of rows
 
 
 def trials_csv(trials: pd.DataFrame) -> str:

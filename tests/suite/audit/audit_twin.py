@@ -92,9 +92,7 @@ def random_motion(rng, duration_s=0.1, largest_gap_m=0.04):
     times = np.concatenate([[0.0], np.sort(rng.uniform(0.0, duration_s, len(states) - 2)), [duration_s]])
     # The more there are, the wider they may pass: some motions stay free of them all.
     count = int(rng.integers(1, 8))
-    obstacles = tuple(
-        _passing_obstacle(rng, arm, times, np.array(states), largest_gap_m * count) for _ in range(count)
-    )
+    obstacles = tuple(_passing_obstacle(rng, arm, times, np.array(states), largest_gap_m * count) for _ in range(count))
     scenario = Scenario(id="random", arm=arm, start_rad=tuple(states[0]), goal_m=UNREACHABLE_M, obstacles=obstacles)
     return Motion(scenario, times, np.array(states))
 
