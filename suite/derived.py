@@ -38,7 +38,8 @@ def write_derived(
     write_text(folder / "trials.csv", trials_csv(trials))
     write_text(folder / "table.csv", as_csv(summary))
     write_text(folder / "table.md", as_markdown_page(folder.name, trials, summary))
-    write_text(folder / "scenarios.jsonl", "".join(f"{scenario.model_dump_json()}\n" for scenario in scenarios))
+    with replacing(folder / "scenarios.jsonl") as handle:
+        handle.writelines(f"{scenario.model_dump_json()}\n" for scenario in scenarios)
     with replacing(folder / "trajectories.csv") as handle:
         _write_trajectories(handle, journal.executed(), n_sections=max(s.arm.n_sections for s in scenarios))
     return summary
