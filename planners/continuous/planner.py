@@ -122,7 +122,6 @@ class ContinuousPlanner(TreePlanner):
             # Widest margin first: a path with less is safer only if it stays so for longer.
             if found is None or tried.reaches or tried.path.times_s[-1] > found.path.times_s[-1] + 5.0:
                 found = tried
-            branches = max(self._retry_branches, branches // 3)
         self._last = found
         self._failures = 0 if found is not None and found.reaches else self._failures + 1
         return found.path if found is not None and len(found.path.times_s) > 1 else None
@@ -134,12 +133,16 @@ class ContinuousPlanner(TreePlanner):
         return max(self._retry_branches, int(self._branches * FADING**self._failures))
 
     def _worlds(self) -> Iterator[SampledWorld]:
-        """The predicted obstacles with the whole margin, half of it and none."""
+        """The predicted obstacles with the whole margin, half of it and none; then smaller than they are.
+
+        That is for an arm which errors of prediction have put into obstacles or behind them: where it thinks that nothing
+        is left it would stand still, and more often than not there is a way.
+        """
         query, prediction = self.problem.query, self.problem.query.prediction
         if not prediction.bounds_m.any():  # whatever the margin, these are the obstacles
             yield query.world
             return
-        for share in (1.0, 0.5, 0.0):
+        for share in (1.0, 0.5, 0.0, -0.5):
             yield prediction.world(share * self._margin, LARGEST_BOUND_M)
 
     def _rest_of_last_path(self, q: FloatArray, now_s: float) -> TimedPath:

@@ -24,8 +24,11 @@ class Prediction(NamedTuple):
     """Bound on the error of each centre, one standard deviation of it, shape (T, m), [m]."""
 
     def world(self, margin: float, largest_bound_m: float = float("inf")) -> SampledWorld:
-        """The obstacles for collision checks, each grown by ``margin`` times its error bound, cut at the largest."""
-        grown = self.radii_m + margin * np.minimum(self.bounds_m, largest_bound_m)
+        """The obstacles for collision checks, each grown by ``margin`` times its error bound, cut at the largest.
+
+        A negative margin makes them smaller, points at the least.
+        """
+        grown = np.maximum(0.0, self.radii_m + margin * np.minimum(self.bounds_m, largest_bound_m))
         return make_world(self.start_s, self.step_s, self.centers_m, grown)
 
 

@@ -165,6 +165,9 @@ def test_margins_grow_the_radii_up_to_the_largest() -> None:
     grown = prediction.world(2.0, 0.003)
     np.testing.assert_allclose(grown.radii_m, 0.02 + 2.0 * np.minimum(prediction.bounds_m, 0.003))
     np.testing.assert_array_equal(prediction.world(0.0).radii_m, np.full((7, 2), 0.02))
+    smaller = prediction.world(-1e4).radii_m
+    np.testing.assert_allclose(smaller, np.maximum(0.0, 0.02 - 1e4 * prediction.bounds_m))
+    assert smaller.min() == 0.0
 
 
 def test_an_unknown_predictor_is_one_line_that_lists_the_known() -> None:
