@@ -135,8 +135,8 @@ class ContinuousPlanner(TreePlanner):
     def _worlds(self) -> Iterator[SampledWorld]:
         """The predicted obstacles with the whole margin, half of it and none; then smaller than they are.
 
-        That is for an arm which errors of prediction have put into obstacles or behind them: where it thinks that nothing
-        is left it would stand still, and more often than not there is a way.
+        That is for an arm which errors of prediction have put into obstacles or behind them: it would stand still where
+        there often is a way.
         """
         query, prediction = self.problem.query, self.problem.query.prediction
         if not prediction.bounds_m.any():  # whatever the margin, these are the obstacles
