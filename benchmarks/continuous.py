@@ -9,6 +9,7 @@ import numpy as np
 from benchmarks.timing import Line
 from planners import PLANNERS, Session, parse_planner
 from scenarios import Scenario, generate
+from suite.audit import collides
 from suite.execution import Execution
 from suite.observation import Observer
 from suite.trial import TrialTask
@@ -63,4 +64,6 @@ def _decide(task: TrialTask) -> tuple[list[float], list[float]]:
             execution.take(plan.times_s, plan.configurations_rad)
         decisions.append(time.perf_counter() - started)
         execution.step()
+        if collides(scenario, execution.q, execution.now_s):
+            break  # as in a trial
     return solves, decisions

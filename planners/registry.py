@@ -56,6 +56,29 @@ class PlannerEntry(NamedTuple):
         return "truth" if self.is_bound else asked or self.predictor
 
 
+def _replanned(
+    name: str,
+    summary: str,
+    source: str,
+    settings: type[BaseModel],
+    build: Callable[[SpaceTimeProblem, Any], ob.Planner],
+) -> PlannerEntry:
+    """A planner of whole ways through a long prediction: asked again as soon as the newest one invalidates its path."""
+    return PlannerEntry(
+        name,
+        summary,
+        source,
+        settings,
+        build,
+        "while_valid",
+        lambda s: float(s.horizon_s),
+        prediction_step_s=0.25,
+        prediction_margin=1.0,
+        largest_bound_m=LARGEST_BOUND_M,
+        predictor="portfolio",
+    )
+
+
 PLANNERS: dict[str, PlannerEntry] = {
     entry.name: entry
     for entry in (
@@ -86,57 +109,33 @@ PLANNERS: dict[str, PlannerEntry] = {
             "path",
             lambda _: 1.0,
         ),
-        PlannerEntry(
+        _replanned(
             "rrt",
             "OMPL's RRT in space-time, replanned when the prediction invalidates the path",
             "LaValle 1998",
             RRTSettings,
             build_rrt,
-            "while_valid",
-            lambda s: float(s.horizon_s),
-            prediction_step_s=0.25,
-            prediction_margin=1.0,
-            largest_bound_m=LARGEST_BOUND_M,
-            predictor="portfolio",
         ),
-        PlannerEntry(
+        _replanned(
             "rrtconnect",
             "OMPL's RRT-Connect in space-time, replanned when the prediction invalidates the path",
             "Kuffner and LaValle, ICRA 2000",
             TreeSettings,
             build_rrtconnect,
-            "while_valid",
-            lambda s: float(s.horizon_s),
-            prediction_step_s=0.25,
-            prediction_margin=1.0,
-            largest_bound_m=LARGEST_BOUND_M,
-            predictor="portfolio",
         ),
-        PlannerEntry(
+        _replanned(
             "strrt",
             "ST-RRT* in space-time, replanned when the prediction invalidates the path",
             "Grothe et al., ICRA 2022",
             STRRTSettings,
             STRRTPlanner,
-            "while_valid",
-            lambda s: float(s.horizon_s),
-            prediction_step_s=0.25,
-            prediction_margin=1.0,
-            largest_bound_m=LARGEST_BOUND_M,
-            predictor="portfolio",
         ),
-        PlannerEntry(
+        _replanned(
             "prm",
             "OMPL's roadmap, searched for the earliest arrival among the predicted obstacles",
             "Kavraki et al. 1996; van den Berg et al. 2006",
             PRMSettings,
             PRMPlanner,
-            "while_valid",
-            lambda s: float(s.horizon_s),
-            prediction_step_s=0.25,
-            prediction_margin=1.0,
-            largest_bound_m=LARGEST_BOUND_M,
-            predictor="portfolio",
         ),
         PlannerEntry(
             "pf",
@@ -147,18 +146,12 @@ PLANNERS: dict[str, PlannerEntry] = {
             "step",
             lambda _: 1.0,
         ),
-        PlannerEntry(
+        _replanned(
             "temporal-ct",
             "space-time tree of steered runs, valid at every instant, repaired when the prediction changes",
             "this suite: docs/temporal-ct.md",
             ContinuousSettings,
             ContinuousPlanner,
-            "while_valid",
-            lambda s: float(s.horizon_s),
-            prediction_step_s=0.25,
-            prediction_margin=1.0,
-            largest_bound_m=LARGEST_BOUND_M,
-            predictor="portfolio",
         ),
         PlannerEntry(
             "clairvoyant",
