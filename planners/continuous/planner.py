@@ -1,6 +1,6 @@
 """The planners around the search: what they keep between solves, and the margins they try."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -22,6 +22,14 @@ MARGIN_M = 5e-5
 """Clearance kept beyond the validator's: obstacles go straight between samples here, not in truth."""
 PRESSING_S = 60.0
 """An arm that is safe for less than this, with no path to the goal, goes on searching in earnest."""
+MARGIN_SHARES = (1.0, 0.5, 0.0, -0.5)
+"""Of the whole margin, in the order in which an arm takes to them that found no way with the one before.
+
+The last takes obstacles for smaller than they are, for an arm which errors of prediction have put into obstacles or
+behind them: it would stand still where there often is a way.
+"""
+LONGER_S = 5.0
+"""A path with less margin that does not lead to the goal either is safer only if it is free for this much longer."""
 FADING = 0.8
 """Its budget from one failed search to the next: the tree has tried much of what there is, and things change."""
 LARGEST_BOUND_M = 0.005
@@ -35,7 +43,7 @@ class SearchSettings(BaseModel):
 
     horizon_s: float = Field(default=120.0, gt=0, le=3600, description="latest arrival considered, from now")
     branches: int = Field(default=500, ge=1, le=10**7, description="budget of a search, in branches of the tree")
-    refinements: int = Field(default=15, ge=0, le=10**7, description="branches after the goal was first reached")
+    refinements: int = Field(default=8, ge=0, le=10**7, description="branches after the goal was first reached")
     enough: float = Field(default=1.1, ge=1, description="no refining below this multiple of the straight way's time")
     bounces: int = Field(default=5, ge=0, le=1000, description="new postures a blocked branch tries")
     step_s: float = Field(default=0.5, gt=0.01, le=1, description="duration of a motion of the tree")
@@ -46,7 +54,7 @@ class ContinuousSettings(SearchSettings):
     """Settings of ``temporal-ct``."""
 
     retry_branches: int = Field(
-        default=15, ge=1, le=10**7, description="the budget of an arm that is safe, but has no path to the goal"
+        default=5, ge=1, le=10**7, description="the budget of an arm that is safe, but has no path to the goal"
     )
     margin: float = Field(default=2.0, ge=0, le=10, description="error bounds kept clear of, in standard deviations")
 
@@ -67,6 +75,11 @@ class Found(NamedTuple):
     path: TimedPath
     reaches: bool
     """Whether the path leads to the goal; otherwise it is the one that stays safe longest."""
+
+    def or_else(self, tried: "Found") -> "Found":
+        """The better of this and what was ``tried`` with less margin: a way to the goal, or much more time."""
+        longer = tried.path.times_s[-1] > self.path.times_s[-1] + LONGER_S
+        return tried if tried.reaches or (longer and not self.reaches) else self
 
 
 class TreePlanner(ArmPlanner):
@@ -112,19 +125,31 @@ class ContinuousPlanner(TreePlanner):
 
     def search(self, q: FloatArray, now_s: float, stop: Callable[[], bool]) -> TimedPath | None:
         """A path to the goal with as wide a margin as can be had; else the one that stays safe longest."""
-        trunk = self._rest_of_last_path(q, now_s)
-        branches = self._budget(now_s)
-        found: Found | None = None
-        for world in self._worlds():
-            if found is not None and (found.reaches or stop()):
-                break
-            tried = self.grow_tree(trunk, world, branches)
-            # Widest margin first: a path with less is safer only if it stays so for longer.
-            if found is None or tried.reaches or tried.path.times_s[-1] > found.path.times_s[-1] + 5.0:
-                found = tried
+        trunk, branches = self._rest_of_last_path(q, now_s), self._budget(now_s)
+        found = self._widest_way(lambda world: self.grow_tree(trunk, world, branches), stop)
         self._last = found
-        self._failures = 0 if found is not None and found.reaches else self._failures + 1
-        return found.path if found is not None and len(found.path.times_s) > 1 else None
+        self._failures = 0 if found.reaches else self._failures + 1
+        return found.path if len(found.path.times_s) > 1 else None
+
+    def _widest_way(self, grow: Callable[[SampledWorld], Found], stop: Callable[[], bool]) -> Found:
+        """Search among the obstacles with one margin after another, until a way to the goal is found."""
+        worlds = self._worlds()
+        found = grow(worlds.pop(0))
+        if found.reaches:
+            return found
+        if worlds and self._failures and not stop():
+            # A way among obstacles is one among smaller ones too: where the smallest leave none, no margin does.
+            found = found.or_else(grow(worlds.pop()))
+            if not found.reaches:
+                return found
+        for world in worlds:
+            if stop():
+                break
+            tried = grow(world)
+            found = found.or_else(tried)
+            if tried.reaches:
+                break
+        return found
 
     def _budget(self, now_s: float) -> int:
         """Branches of the next search: all of them at first, few while the arm is safe without a path to the goal."""
@@ -132,18 +157,12 @@ class ContinuousPlanner(TreePlanner):
             return self._retry_branches
         return max(self._retry_branches, int(self._branches * FADING**self._failures))
 
-    def _worlds(self) -> Iterator[SampledWorld]:
-        """The predicted obstacles with the whole margin, half of it and none; then smaller than they are.
-
-        That is for an arm which errors of prediction have put into obstacles or behind them: it would stand still where
-        there often is a way.
-        """
-        query, prediction = self.problem.query, self.problem.query.prediction
-        if not prediction.bounds_m.any():  # whatever the margin, these are the obstacles
-            yield query.world
-            return
-        for share in (1.0, 0.5, 0.0, -0.5):
-            yield prediction.world(share * self._margin, LARGEST_BOUND_M)
+    def _worlds(self) -> list[SampledWorld]:
+        """The predicted obstacles with all of the margin first; only so where it makes no difference."""
+        prediction = self.problem.query.prediction
+        widest_m = self._margin * min(float(prediction.bounds_m.max(initial=0.0)), LARGEST_BOUND_M)
+        shares = MARGIN_SHARES if widest_m > MARGIN_M else MARGIN_SHARES[:1]
+        return [prediction.world(share * self._margin, LARGEST_BOUND_M) for share in shares]
 
     def _rest_of_last_path(self, q: FloatArray, now_s: float) -> TimedPath:
         """What is left of the last path, from the present state on; the present state alone when it is not on it."""

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from planners.prediction.arc import ArcPredictor
 from planners.prediction.cubic import CubicPredictor
+from planners.prediction.gaussian import GaussianProcessPredictor
 from planners.prediction.kalman import KalmanPredictor
 from planners.prediction.observation import Observation
 from planners.prediction.portfolio import PortfolioPredictor
@@ -29,9 +30,10 @@ PREDICTORS: dict[str, PredictorEntry] = {
     "cubic": PredictorEntry("cubic spline over the last 5 observations (the paper's)", lambda _: CubicPredictor()),
     "arc": PredictorEntry("circular arc through everything seen", lambda _: ArcPredictor()),
     "kalman": PredictorEntry("Kalman filters of constant velocity and acceleration", lambda _: KalmanPredictor()),
+    "gp": PredictorEntry("Gaussian processes, averaged by their evidence", lambda _: GaussianProcessPredictor()),
     "portfolio": PredictorEntry(
-        "arc, kalman and cubic, each obstacle by what hindsight favours",
-        lambda _: PortfolioPredictor([ArcPredictor(), KalmanPredictor(), CubicPredictor()]),
+        "arc, kalman and gp, each obstacle by what hindsight favours",
+        lambda _: PortfolioPredictor([ArcPredictor(), KalmanPredictor(), GaussianProcessPredictor()]),
     ),
     "truth": PredictorEntry(
         "the true motion: a bound", lambda scenario: TruthPredictor(scenario.obstacles), is_oracle=True

@@ -7,13 +7,15 @@ from hypothesis import strategies as st
 from scipy.interpolate import interp1d
 from scipy.spatial.transform import Rotation
 from strategies import seeds
-from twins.prediction import constant_turn, kalman, turned
+from twins.prediction import constant_turn, gaussian_process, kalman, turned
 
 from planners import PREDICTORS, Observation
-from planners.prediction import Predictor
+from planners.prediction import Predictor, gaussian
 from planners.prediction.arc import ArcPredictor
 from planners.prediction.arc import _kernels as arc
 from planners.prediction.cubic import CubicPredictor
+from planners.prediction.gaussian import GaussianProcessPredictor
+from planners.prediction.gaussian import _kernels as processes
 from planners.prediction.kalman import KalmanPredictor
 from planners.prediction.kalman import _kernels as filters
 from planners.prediction.model import NOISE_FLOOR_M, SPEED_RADII, TURN_RADII
@@ -138,6 +140,39 @@ def test_a_filter_is_its_twin_in_matrices(seed: int, order: int, ratio: float) -
     np.testing.assert_allclose(covs[1, [0, 1, 3]], cov[[0, 0, 1], [0, 1, 1]], rtol=1e-4, atol=1e-4)
     assert evidences[1] == pytest.approx(evidence, rel=1e-4, abs=1e-3)
     assert noises[1] == pytest.approx(noise, rel=1e-4)
+
+
+@given(seed=seeds, count=st.sampled_from([1, 2, 7, 20, gaussian.HISTORY + 12]), noise=st.sampled_from([5e-4, 2e-3]))
+def test_gaussian_processes_are_their_twin_in_matrices_now_and_earlier(seed: int, count: int, noise: float) -> None:
+    rng = np.random.default_rng(seed)
+    times = np.arange(count, dtype=np.float64)
+    positions = moving(rng, times, "circle") + noise * rng.normal(size=(count, 2, 3))
+    origins, targets = np.array([count // 2, count - 1]), np.array([[count - 1, -1]])
+    found = GaussianProcessPredictor().extrapolate(Observation(times, positions, RADII_M), origins, targets, AHEAD_S)
+    first = max(0, count - gaussian.HISTORY)
+    for j, radius in enumerate(RADII_M):
+        prior = (gaussian.EXCURSION_RADII * radius, processes.PRIOR_OBSERVATIONS, processes.NEGLIGIBLE)
+        model = (gaussian.LENGTHS_S, gaussian.RATIOS, *prior)
+        places, variances, noise_variance = gaussian_process(
+            times[first:], positions[first:, j], times[-1] + AHEAD_S, *model
+        )
+        assert (np.abs(found.centers_m[j] - places) < 1e-3 * np.sqrt(variances)[:, None] + 1e-9).all()
+        np.testing.assert_allclose(found.variances[j], 2.0 * variances, rtol=1e-3, atol=1e-12)
+        assert found.noise_variances[j] == pytest.approx(noise_variance, rel=1e-3, abs=1e-14)
+        known = slice(first, max(first, origins[0]) + 1)
+        places, variances, _ = gaussian_process(times[known], positions[known, j], times[-1:], *model)
+        assert (np.abs(found.past_m[j, 0, 0] - places[0]) < 1e-3 * np.sqrt(variances[0]) + 1e-9).all()
+        assert found.past_variances[j, 0, 0] == pytest.approx(2.0 * variances[0], rel=1e-3, abs=1e-12)
+
+
+def test_gaussian_processes_see_through_a_smooth_path_that_is_neither_line_nor_circle() -> None:
+    times = np.arange(-5.0, 35.0)
+    path = np.stack([0.1 * np.sin(0.05 * times), 0.08 * np.cos(0.03 * times), 0.05 * np.sin(0.07 * times + 1)], axis=1)
+    for count, ahead, error in ((6, 8.0, 1e-3), (25, 15.0, 1e-3)):
+        forecast = GaussianProcessPredictor().forecast(
+            Observation(times[:count], path[:count, None], RADII_M[:1]), times[count - 1 : count] + ahead
+        )
+        assert np.linalg.norm(forecast.centers_m[0, 0] - path[count - 1 + int(ahead)]) < error
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -64,3 +64,44 @@ def kalman(
     count = len(times) - skipped
     noise = squares / (3 * count)
     return state, cov, -1.5 * (logs + count * np.log(noise)), noise
+
+
+def gaussian_process(
+    times: np.ndarray,
+    positions: np.ndarray,
+    wanted: np.ndarray,
+    lengths: tuple[float, ...],
+    ratios: tuple[float, ...],
+    scale: float,
+    prior: float,
+    negligible: float,
+) -> tuple[np.ndarray, np.ndarray, float]:
+    """Regression about an unknown mean (Rasmussen and Williams, equation 2.41 f.), averaged by evidence, in matrices.
+
+    Forecasts (T, 3), the variances of their coordinates (T,), and the noise's variance.
+    """
+    n, ones = len(times), np.ones(len(times))
+    evidence, places, spreads, noises = [], [], [], []
+    for length in lengths:
+        for ratio in ratios:
+            within = np.exp(-0.5 * ((times[:, None] - times) / length) ** 2) + ratio * np.eye(n)
+            across = np.exp(-0.5 * ((wanted[:, None] - times) / length) ** 2)
+            precision = ones @ np.linalg.solve(within, ones)
+            mean = ones @ np.linalg.solve(within, positions) / precision
+            solved = np.linalg.solve(within, positions - mean)
+            freedom = 3 * (n - 1 + prior)
+            variance = (((positions - mean) * solved).sum() + 3 * prior * scale**2) / freedom
+            left = 1.0 - (across * np.linalg.solve(within, across.T).T).sum(axis=1)
+            left += (1.0 - across @ np.linalg.solve(within, ones)) ** 2 / precision
+            places.append(mean + across @ solved)
+            spreads.append(variance * left)
+            noises.append(variance * ratio)
+            log_det = np.linalg.slogdet(within)[1]
+            evidence.append(-0.5 * freedom * np.log(variance) - 1.5 * log_det - 1.5 * np.log(precision))
+    weights = np.exp(np.array(evidence) - max(evidence))
+    weights /= weights.sum()
+    weights[weights < negligible] = 0.0
+    weights /= weights.sum()
+    mixed = np.tensordot(weights, places, axes=1)
+    apart = np.square(np.array(places) - mixed).mean(axis=2)
+    return mixed, weights @ (np.array(spreads) + apart), float(weights @ noises)
