@@ -36,7 +36,7 @@ def main() -> None:
     parser.add_argument(
         "parts", nargs="*", metavar="part", help=f"which to run: {', '.join(parts)}; all by default, but for strrt"
     )
-    parser.add_argument("--quick", action="store_true", help="fewer and smaller samples: two minutes, not six")
+    parser.add_argument("--quick", action="store_true", help="fewer and smaller samples: two minutes, not eight")
     given = parser.parse_args()
     unknown = [part for part in given.parts if part not in parts]
     if unknown:

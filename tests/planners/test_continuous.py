@@ -3,11 +3,14 @@ import pytest
 
 from planners import Observation, Session, parse_planner
 from planners.certificate import _kernels as certificate
+from planners.continuous.planner import Found, TreePlanner
 from planners.continuous.workspace import Workspace, body_of
+from planners.problem import TimedPath
 from planners.steering import _kernels as steering
 from scenarios import ContinuumArm, Obstacle, Orbit, Scenario, generate, make_world
 from scenarios.kernels.clearance import clearances
 from scenarios.kernels.kinematics import section_arcs, tip_jacobian
+from scenarios.world import SampledWorld
 from suite.audit import audit
 
 ARM = ContinuumArm()
@@ -83,6 +86,33 @@ def test_without_a_way_to_the_goal_the_path_is_free_for_as_long_as_can_be() -> N
     assert plan.times_s[-1] >= 19.0
     assert audit(scenario, plan.times_s, plan.configurations_rad).executable.violation_kind == "short of goal"
     assert not planned.still_valid(plan.times_s, plan.configurations_rad, observe(scenario))
+
+
+@pytest.mark.parametrize(("noise_m", "searches"), [(0.0, [1, 1, 1]), (0.002, [4, 2, 2])])
+def test_margins_are_tried_only_where_they_can_help(
+    noise_m: float, searches: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # The goal lies deep inside a sphere: with no margin is there a way.
+    start = np.full(6, 0.2)
+    sphere = still_sphere((0.2, 0.0, 0.2), 0.1)
+    scenario = Scenario(
+        id="shut", arm=ARM, start_rad=tuple(start.tolist()), goal_m=(0.2, 0.0, 0.2), obstacles=(sphere,)
+    )
+    asked: list[float] = []
+
+    def counted(planner: TreePlanner, trunk: TimedPath, world: SampledWorld, branches: int) -> Found:
+        asked.append(trunk.times_s[0])
+        return grow_tree(planner, trunk, world, branches)
+
+    grow_tree = TreePlanner.grow_tree
+    monkeypatch.setattr(TreePlanner, "grow_tree", counted)
+    planned = session(scenario, "temporal-ct[branches=20,horizon_s=20]", predictor="portfolio")
+    rng = np.random.default_rng(4)
+    for now_s in (0.0, 1.0, 2.0):
+        seen = observe(scenario, now_s)
+        noise = noise_m * rng.normal(size=seen.positions_m.shape)
+        planned.plan(start, now_s, seen._replace(positions_m=seen.positions_m + noise))
+    assert [asked.count(now_s) for now_s in (0.0, 1.0, 2.0)] == searches
 
 
 def test_an_arm_that_seems_to_be_touched_gets_out() -> None:

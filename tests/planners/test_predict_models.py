@@ -151,8 +151,8 @@ def test_gaussian_processes_are_their_twin_in_matrices_now_and_earlier(seed: int
     found = GaussianProcessPredictor().extrapolate(Observation(times, positions, RADII_M), origins, targets, AHEAD_S)
     first = max(0, count - gaussian.HISTORY)
     for j, radius in enumerate(RADII_M):
-        prior = (gaussian.EXCURSION_RADII * radius, processes.PRIOR_OBSERVATIONS, processes.NEGLIGIBLE)
-        model = (gaussian.LENGTHS_S, gaussian.RATIOS, *prior)
+        prior = (gaussian.EXCURSION_RADII * radius, processes.PRIOR_OBSERVATIONS)
+        model = (gaussian.LENGTHS_S, gaussian.RATIOS, prior, processes.NEGLIGIBLE)
         places, variances, noise_variance = gaussian_process(
             times[first:], positions[first:, j], times[-1] + AHEAD_S, *model
         )

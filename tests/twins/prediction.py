@@ -72,15 +72,16 @@ def gaussian_process(
     wanted: np.ndarray,
     lengths: tuple[float, ...],
     ratios: tuple[float, ...],
-    scale: float,
-    prior: float,
+    prior: tuple[float, float],
     negligible: float,
 ) -> tuple[np.ndarray, np.ndarray, float]:
     """Regression about an unknown mean (Rasmussen and Williams, equation 2.41 f.), averaged by evidence, in matrices.
 
-    Forecasts (T, 3), the variances of their coordinates (T,), and the noise's variance.
+    The prior is a plausible excursion and the number of observations it counts for. Returns forecasts (T, 3), the
+    variances of their coordinates (T,), and the noise's variance.
     """
     n, ones = len(times), np.ones(len(times))
+    scale, worth = prior
     evidence, places, spreads, noises = [], [], [], []
     for length in lengths:
         for ratio in ratios:
@@ -89,8 +90,8 @@ def gaussian_process(
             precision = ones @ np.linalg.solve(within, ones)
             mean = ones @ np.linalg.solve(within, positions) / precision
             solved = np.linalg.solve(within, positions - mean)
-            freedom = 3 * (n - 1 + prior)
-            variance = (((positions - mean) * solved).sum() + 3 * prior * scale**2) / freedom
+            freedom = 3 * (n - 1 + worth)
+            variance = (((positions - mean) * solved).sum() + 3 * worth * scale**2) / freedom
             left = 1.0 - (across * np.linalg.solve(within, across.T).T).sum(axis=1)
             left += (1.0 - across @ np.linalg.solve(within, ones)) ** 2 / precision
             places.append(mean + across @ solved)
