@@ -28,8 +28,8 @@ MARGIN_SHARES = (1.0, 0.5, 0.0, -0.5)
 The last takes obstacles for smaller than they are, for an arm which errors of prediction have put into obstacles or
 behind them: it would stand still where there often is a way.
 """
-LONGER_S = 5.0
-"""A path with less margin that does not lead to the goal either is safer only if it is free for this much longer."""
+IMMINENT_S = 5.0
+"""A path that is free for longer than this is not given up for one with less margin, unless that leads to the goal."""
 FADING = 0.8
 """Its budget from one failed search to the next: the tree has tried much of what there is, and things change."""
 LARGEST_BOUND_M = 0.005
@@ -77,9 +77,10 @@ class Found(NamedTuple):
     """Whether the path leads to the goal; otherwise it is the one that stays safe longest."""
 
     def or_else(self, tried: "Found") -> "Found":
-        """The better of this and what was ``tried`` with less margin: a way to the goal, or much more time."""
-        longer = tried.path.times_s[-1] > self.path.times_s[-1] + LONGER_S
-        return tried if tried.reaches or (longer and not self.reaches) else self
+        """The better of this and what was ``tried`` with less margin: a way to the goal, or much more time in need."""
+        start_s, end_s = self.path.times_s[0], self.path.times_s[-1]
+        in_need = not self.reaches and end_s < start_s + IMMINENT_S
+        return tried if tried.reaches or (in_need and tried.path.times_s[-1] > end_s + IMMINENT_S) else self
 
 
 class TreePlanner(ArmPlanner):

@@ -88,6 +88,18 @@ def test_without_a_way_to_the_goal_the_path_is_free_for_as_long_as_can_be() -> N
     assert not planned.still_valid(plan.times_s, plan.configurations_rad, observe(scenario))
 
 
+def test_less_margin_is_for_a_way_to_the_goal_or_for_an_arm_in_need() -> None:
+    def lasts(seconds: float, reaches: bool = False) -> Found:
+        return Found(TimedPath(np.array([7.0, 7.0 + seconds]), np.zeros((2, 6))), reaches)
+
+    calm, pressed, longer, way = lasts(30.0), lasts(2.0), lasts(100.0), lasts(20.0, reaches=True)
+    assert calm.or_else(way) is way
+    assert calm.or_else(longer) is calm
+    assert pressed.or_else(longer) is longer
+    assert pressed.or_else(lasts(4.0)) is pressed
+    assert way.or_else(longer) is way
+
+
 @pytest.mark.parametrize(("noise_m", "searches"), [(0.0, [1, 1, 1]), (0.002, [4, 2, 2])])
 def test_margins_are_tried_only_where_they_can_help(
     noise_m: float, searches: list[int], monkeypatch: pytest.MonkeyPatch
