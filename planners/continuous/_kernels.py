@@ -193,9 +193,12 @@ def near_node(tree, target, before, goal, stop, bound, rng, body):
         way = turn = 0.0
         for r in range(3):
             way += (tree.tips[k, r] - target.point[r]) ** 2
+        shunned = (1.0 + FAILURE_WEIGHT * tree.failures[k]) ** 2
+        if per_tip * way * shunned >= best:  # the posture can only add to that
+            continue
         for c in range(target.posture.shape[0]):
             turn += (tree.states[k, c] - target.posture[c]) ** 2
-        far = (per_tip * way + per_bend * turn) * (1.0 + FAILURE_WEIGHT * tree.failures[k]) ** 2
+        far = (per_tip * way + per_bend * turn) * shunned
         if far < best:
             best, found = far, k
     return found

@@ -1,5 +1,6 @@
 """The planners around the search: what they keep between solves, and the margins they try."""
 
+import functools
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -28,6 +29,10 @@ MARGIN_SHARES = (1.0, 0.5, 0.0, -0.5)
 The last takes obstacles for smaller than they are, for an arm which errors of prediction have put into obstacles or
 behind them: it would stand still where there often is a way.
 """
+NEAR_S, FAR_S = 2.0, 4.0
+"""Until when a motion is about to be executed, and from when on it will have been thought over."""
+ROOM_S = 3.0
+"""An arm has somewhere to go if it finds a path that is free for as long as this."""
 IMMINENT_S = 5.0
 """A path that is free for longer than this is not given up for one with less margin, unless that leads to the goal."""
 FADING = 0.8
@@ -76,11 +81,15 @@ class Found(NamedTuple):
     reaches: bool
     """Whether the path leads to the goal; otherwise it is the one that stays safe longest."""
 
+    @property
+    def lasts_s(self) -> float:
+        """For how long the path is free [s]."""
+        return float(self.path.times_s[-1] - self.path.times_s[0])
+
     def or_else(self, tried: "Found") -> "Found":
         """The better of this and what was ``tried`` with less margin: a way to the goal, or much more time in need."""
-        start_s, end_s = self.path.times_s[0], self.path.times_s[-1]
-        in_need = not self.reaches and end_s < start_s + IMMINENT_S
-        return tried if tried.reaches or (in_need and tried.path.times_s[-1] > end_s + IMMINENT_S) else self
+        in_need = not self.reaches and self.lasts_s < IMMINENT_S
+        return tried if tried.reaches or (in_need and tried.lasts_s > self.lasts_s + IMMINENT_S) else self
 
 
 class TreePlanner(ArmPlanner):
@@ -133,37 +142,46 @@ class ContinuousPlanner(TreePlanner):
         return found.path if len(found.path.times_s) > 1 else None
 
     def _widest_way(self, grow: Callable[[SampledWorld], Found], stop: Callable[[], bool]) -> Found:
-        """Search among the obstacles with one margin after another, until a way to the goal is found."""
-        worlds = self._worlds()
-        found = grow(worlds.pop(0))
-        if found.reaches:
-            return found
-        if worlds and self._failures and not stop():
-            # A way among obstacles is one among smaller ones too: where the smallest leave none, no margin does.
-            found = found.or_else(grow(worlds.pop()))
-            if not found.reaches:
-                return found
-        for world in worlds:
-            if stop():
+        """Search among the obstacles with one margin after another, until a way to the goal is found.
+
+        What is about to be executed keeps the widest margin with which the arm had anywhere to go; only further ahead,
+        where more will have been seen by then, is it the margin that is being tried.
+        """
+        found, near = list[Found](), None
+        for share in self._shares():
+            if found and stop():
                 break
-            tried = grow(world)
-            found = found.or_else(tried)
-            if tried.reaches:
+            tried = grow(self._world(share if near is None else near, share))
+            found.append(tried)
+            if share == MARGIN_SHARES[-1]:
+                # A way among obstacles is one among smaller ones too: where the smallest leave none, no margin does.
+                if not tried.reaches:
+                    break
+            elif tried.reaches:
                 break
-        return found
+            elif near is None and tried.lasts_s >= ROOM_S:
+                near = share
+        return functools.reduce(Found.or_else, found)
+
+    def _shares(self) -> tuple[float, ...]:
+        """Shares of the margin to try: one where it makes no difference; the least second where none did before."""
+        bounds = self.problem.query.prediction.bounds_m
+        if self._margin * min(float(bounds.max(initial=0.0)), LARGEST_BOUND_M) <= MARGIN_M:
+            return MARGIN_SHARES[:1]
+        widest, *others, least = MARGIN_SHARES
+        return (widest, least, *others) if self._failures else MARGIN_SHARES
+
+    def _world(self, near: float, far: float) -> SampledWorld:
+        """The predicted obstacles with one share of the margin in the next seconds and another further ahead."""
+        prediction = self.problem.query.prediction
+        passed = np.clip((prediction.ahead_s - NEAR_S) / (FAR_S - NEAR_S), 0.0, 1.0)
+        return prediction.world(self._margin * (near + (far - near) * passed), LARGEST_BOUND_M)
 
     def _budget(self, now_s: float) -> int:
         """Branches of the next search: all of them at first, few while the arm is safe without a path to the goal."""
         if self._last is not None and not self._last.reaches and self._last.path.times_s[-1] >= now_s + PRESSING_S:
             return self._retry_branches
         return max(self._retry_branches, int(self._branches * FADING**self._failures))
-
-    def _worlds(self) -> list[SampledWorld]:
-        """The predicted obstacles with all of the margin first; only so where it makes no difference."""
-        prediction = self.problem.query.prediction
-        widest_m = self._margin * min(float(prediction.bounds_m.max(initial=0.0)), LARGEST_BOUND_M)
-        shares = MARGIN_SHARES if widest_m > MARGIN_M else MARGIN_SHARES[:1]
-        return [prediction.world(share * self._margin, LARGEST_BOUND_M) for share in shares]
 
     def _rest_of_last_path(self, q: FloatArray, now_s: float) -> TimedPath:
         """What is left of the last path, from the present state on; the present state alone when it is not on it."""

@@ -23,12 +23,19 @@ class Prediction(NamedTuple):
     bounds_m: FloatArray
     """Bound on the error of each centre, one standard deviation of it, shape (T, m), [m]."""
 
-    def world(self, margin: float, largest_bound_m: float = float("inf")) -> SampledWorld:
+    @property
+    def ahead_s(self) -> FloatArray:
+        """Times of ``centers_m`` after the last observation, shape (T,), [s]."""
+        return self.step_s * np.arange(len(self.centers_m), dtype=np.float64)
+
+    def world(self, margin: float | FloatArray, largest_bound_m: float = float("inf")) -> SampledWorld:
         """The obstacles for collision checks, each grown by ``margin`` times its error bound, cut at the largest.
 
-        A negative margin makes them smaller, points at the least.
+        The margin may be one for all times or one for each, shape (T,). A negative one makes obstacles smaller, points
+        at the least.
         """
-        grown = np.maximum(0.0, self.radii_m + margin * np.minimum(self.bounds_m, largest_bound_m))
+        margins = np.reshape(margin, (-1, 1))
+        grown = np.maximum(0.0, self.radii_m + margins * np.minimum(self.bounds_m, largest_bound_m))
         return make_world(self.start_s, self.step_s, self.centers_m, grown)
 
 

@@ -168,6 +168,9 @@ def test_margins_grow_the_radii_up_to_the_largest() -> None:
     smaller = prediction.world(-1e4).radii_m
     np.testing.assert_allclose(smaller, np.maximum(0.0, 0.02 - 1e4 * prediction.bounds_m))
     assert smaller.min() == 0.0
+    fading = prediction.world(2.0 - prediction.ahead_s, 0.003).radii_m
+    for k, margin in enumerate((2.0, 1.0, 0.0, -1.0, -2.0, -3.0, -4.0)):
+        np.testing.assert_array_equal(fading[k], prediction.world(margin, 0.003).radii_m[k])
 
 
 def test_an_unknown_predictor_is_one_line_that_lists_the_known() -> None:
