@@ -142,17 +142,33 @@ def test_a_filter_is_its_twin_in_matrices(seed: int, order: int, ratio: float) -
     assert noises[1] == pytest.approx(noise, rel=1e-4)
 
 
+LOST = {
+    "nothing": lambda rng, count: np.zeros((count, 2), dtype=bool),
+    "half": lambda rng, count: rng.uniform(size=(count, 2)) < 0.5,
+    "nearly all": lambda rng, count: rng.uniform(size=(count, 2)) < 0.9,
+    "all but the first": lambda rng, count: np.ones((count, 2), dtype=bool),
+    "the latest": lambda rng, count: np.tile(np.arange(count)[:, None] >= count - 2, 2),
+    "one of one, the latest of the other": lambda rng, count: np.arange(count)[:, None] == [count // 2, count - 1],
+    "nothing of one": lambda rng, count: (rng.uniform(size=(count, 2)) < 0.5) & [False, True],
+}
+"""Which observations (count, 2) of two obstacles are lost; the first never is."""
+
+
+@pytest.mark.parametrize("lost", LOST)
 @given(seed=seeds, count=st.sampled_from([1, 2, 7, 20, gaussian.HISTORY + 12]), noise=st.sampled_from([5e-4, 2e-3]))
-def test_gaussian_processes_are_their_twin_in_matrices_now_and_earlier(seed: int, count: int, noise: float) -> None:
+def test_gaussian_processes_are_their_twin_in_matrices_now_and_earlier(
+    lost: str, seed: int, count: int, noise: float
+) -> None:
     rng = np.random.default_rng(seed)
     times = np.arange(count, dtype=np.float64)
     positions = moving(rng, times, "circle") + noise * rng.normal(size=(count, 2, 3))
+    positions[1:][LOST[lost](rng, count)[1:]] = np.nan
     origins, targets = np.array([count // 2, count - 1]), np.array([[count - 1, -1]])
     found = GaussianProcessPredictor().extrapolate(Observation(times, positions, RADII_M), origins, targets, AHEAD_S)
-    first = max(0, count - gaussian.HISTORY)
     for j, radius in enumerate(RADII_M):
         prior = (gaussian.EXCURSION_RADII * radius, processes.PRIOR_OBSERVATIONS)
         model = (gaussian.LENGTHS_S, gaussian.RATIOS, prior, processes.NEGLIGIBLE)
+        first = np.flatnonzero(~np.isnan(positions[:, j, 0]))[-gaussian.HISTORY :][0]
         places, variances, noise_variance = gaussian_process(
             times[first:], positions[first:, j], times[-1] + AHEAD_S, *model
         )
@@ -163,6 +179,20 @@ def test_gaussian_processes_are_their_twin_in_matrices_now_and_earlier(seed: int
         places, variances, _ = gaussian_process(times[known], positions[known, j], times[-1:], *model)
         assert (np.abs(found.past_m[j, 0, 0] - places[0]) < 1e-3 * np.sqrt(variances[0]) + 1e-9).all()
         assert found.past_variances[j, 0, 0] == pytest.approx(2.0 * variances[0], rel=1e-3, abs=1e-12)
+
+
+@given(seed=seeds, count=st.sampled_from([8, 40, 70]))
+def test_what_was_lost_of_one_obstacle_does_not_change_what_gaussian_processes_say_of_another(
+    seed: int, count: int
+) -> None:
+    rng = np.random.default_rng(seed)
+    times = np.arange(count, dtype=np.float64)
+    positions = moving(rng, times, "circle") + 1e-3 * rng.normal(size=(count, 2, 3))
+    whole = GaussianProcessPredictor().forecast(Observation(times, positions, RADII_M), times[-1] + AHEAD_S)
+    positions[1 + rng.integers(count - 1), 1] = np.nan
+    gaps = GaussianProcessPredictor().forecast(Observation(times, positions, RADII_M), times[-1] + AHEAD_S)
+    np.testing.assert_array_equal(gaps.centers_m[:, 0], whole.centers_m[:, 0])
+    np.testing.assert_array_equal(gaps.bounds_m[:, 0], whole.bounds_m[:, 0])
 
 
 def test_gaussian_processes_see_through_a_smooth_path_that_is_neither_line_nor_circle() -> None:

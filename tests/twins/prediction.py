@@ -77,9 +77,11 @@ def gaussian_process(
 ) -> tuple[np.ndarray, np.ndarray, float]:
     """Regression about an unknown mean (Rasmussen and Williams, equation 2.41 f.), averaged by evidence, in matrices.
 
-    The prior is a plausible excursion and the number of observations it counts for. Returns forecasts (T, 3), the
-    variances of their coordinates (T,), and the noise's variance.
+    Lost observations (nan) have no rows in them. The prior is a plausible excursion and the number of observations it
+    counts for. Returns forecasts (T, 3), the variances of their coordinates (T,), and the noise's variance.
     """
+    seen = ~np.isnan(positions[:, 0])
+    times, positions = times[seen], positions[seen]
     n, ones = len(times), np.ones(len(times))
     scale, worth = prior
     evidence, places, spreads, noises = [], [], [], []

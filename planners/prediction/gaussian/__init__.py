@@ -3,11 +3,11 @@
 import functools
 
 import numpy as np
-from scipy.linalg import cholesky, solve_triangular
+from scipy.linalg.lapack import dpotrf, dtrtrs
 
 from planners.prediction.gaussian._kernels import Basis, follow
 from planners.prediction.model import NOISE_FLOOR_M, TURN_RADII, Extrapolation, Indices, Model
-from planners.prediction.observation import Observation, without_gaps
+from planners.prediction.observation import Observation
 from scenarios.arm import FloatArray
 
 HISTORY = 48
@@ -24,7 +24,7 @@ class GaussianProcessPredictor(Model):
     """Regression with squared exponential covariances about an unknown mean place, averaged by their evidence.
 
     Sharp on smooth paths of any shape without noise, and soon with noise. Far ahead an obstacle drifts back to where it
-    has been. The variance of the motion is its most probable one. Lost observations are filled in.
+    has been. The variance of the motion is its most probable one. Lost observations are left out.
     """
 
     leaves_out = 4
@@ -33,44 +33,76 @@ class GaussianProcessPredictor(Model):
         self, observation: Observation, origins: Indices, targets: Indices, ahead_s: FloatArray
     ) -> Extrapolation:
         """See ``Model.extrapolate``."""
-        times, positions, radii = without_gaps(observation)
-        first = max(0, len(times) - HISTORY)
-        counts = np.maximum(1, origins + 1 - first)
-        since = times - times[-1]
-        basis = _basis(since[first:].tobytes(), counts.tobytes(), since[targets].tobytes(), ahead_s.tobytes())
-        return Extrapolation(*follow(positions[first:], EXCURSION_RADII * radii, counts, basis, NOISE_FLOOR_M))
+        times, positions, radii = observation
+        recent = np.arange(len(times))[-HISTORY:]
+        if not np.isnan(positions[recent, :, 0]).any():
+            return _through(recent, observation, origins, targets, ahead_s)
+        each = []
+        for j in range(len(radii)):
+            seen = np.flatnonzero(~np.isnan(positions[:, j, 0]))[-HISTORY:]
+            alone = Observation(times, positions[:, j : j + 1], radii[j : j + 1])
+            each.append(_through(seen, alone, origins, targets, ahead_s))
+        return Extrapolation(*(np.concatenate(parts) for parts in zip(*each, strict=True)))
+
+
+def _through(
+    seen: Indices, observation: Observation, origins: Indices, targets: Indices, ahead_s: FloatArray
+) -> Extrapolation:
+    """See ``Model.extrapolate``: through the observations with indices ``seen``, of which none is lost."""
+    times, positions, radii = observation
+    since, scales = times - times[-1], EXCURSION_RADII * radii
+    if len(seen) == len(times) - seen[0]:  # times that recur, in every scenario
+        basis = _remembered(since[seen].tobytes(), since[targets].tobytes(), targets.shape, ahead_s.tobytes())
+    else:
+        basis = _basis(since[seen], since[targets], ahead_s)
+    counts = np.maximum(1, np.searchsorted(seen, origins, side="right"))
+    return Extrapolation(*follow(positions[seen], scales, counts, basis, NOISE_FLOOR_M))
 
 
 @functools.lru_cache(maxsize=64)
-def _basis(seen: bytes, counts: bytes, wanted: bytes, ahead: bytes) -> Basis:
-    """Everything that follows from when obstacles were seen: all times are relative to the present."""
-    times, later, known = np.frombuffer(seen), np.frombuffer(ahead), np.frombuffer(counts, dtype=np.int64)[:-1]
-    targets = np.frombuffer(wanted).reshape(len(known), -1 if len(known) else 0)
-    inverses, logs, past, variances = [], [], [], []
-    for length in LENGTHS_S:
-        within, to_targets, to_later = (_covariance(times, other, length) for other in (times, targets, later))
-        for ratio in RATIOS:
-            factor = cholesky(within + ratio * np.eye(len(times)), lower=True)
-            inverse = solve_triangular(factor, np.eye(len(times)), lower=True)
-            inverses.append(inverse)
-            logs.append(np.cumsum(np.log(np.diag(factor))))
-            past.append(np.tensordot(to_targets, inverse, axes=(0, 1)))
-            variances.append(_variance(inverse @ to_later, inverse.sum(axis=1)))
+def _remembered(seen: bytes, wanted: bytes, shape: tuple[int, ...], ahead: bytes) -> Basis:
+    """The basis with variances; ``shape`` is that of the targets."""
+    basis = _basis(np.frombuffer(seen), np.frombuffer(wanted).reshape(shape), np.frombuffer(ahead))
+    variances = []
+    for f, whitener in enumerate(basis.whiteners):
+        inverse = whitener.T
+        variances.append(_variance(inverse @ basis.crosses[f // len(RATIOS)], inverse.sum(axis=1)))
+    return basis._replace(variances=np.array(variances))
+
+
+def _basis(times: FloatArray, targets: FloatArray, later: FloatArray) -> Basis:
+    """What follows from when obstacles were seen, without variances; all times are relative to the present."""
+    n, r, one = len(LENGTHS_S) * len(RATIOS), len(times), np.eye(len(times))
+    whiteners, ones, logs = np.empty((n, r, r)), np.empty((n, r)), np.empty((n, r))
+    past, crosses = np.empty((n, targets.size, r)), np.empty((len(LENGTHS_S), r, len(later)))
+    for e, length in enumerate(LENGTHS_S):
+        within, to_targets = _covariance(times, times, length), _covariance(times, targets.ravel(), length)
+        crosses[e] = _covariance(times, later, length)
+        for f, ratio in enumerate(RATIOS, e * len(RATIOS)):
+            factor, _ = dpotrf(within + ratio * one, lower=1)  # bare LAPACK: SciPy's checks take longer
+            inverse, _ = dtrtrs(factor, one, lower=1)
+            whiteners[f] = inverse.T
+            ones[f] = np.ascontiguousarray(inverse).sum(axis=1)
+            logs[f] = np.cumsum(np.log(np.diag(factor)))
+            past[f] = to_targets.T @ inverse.T
     return Basis(
-        whiteners=np.array(inverses).transpose(0, 2, 1).copy(),
-        ones=np.array(inverses).sum(axis=2),
-        logs=np.array(logs),
-        past=np.array(past),
-        crosses=np.array([_covariance(times, later, length) for length in LENGTHS_S]),
-        variances=np.array(variances),
+        whiteners=whiteners,
+        ones=ones,
+        logs=logs,
+        past=past.reshape(n, *targets.shape, r),
+        crosses=crosses,
+        variances=np.empty((0, len(later))),
         ratios=np.tile(RATIOS, len(LENGTHS_S)),
     )
 
 
 def _covariance(times_s: FloatArray, others_s: FloatArray, length_s: float) -> FloatArray:
-    """Squared exponential between every two times, 1 at no distance: (r, *others)."""
-    apart = np.subtract.outer(times_s, others_s) / length_s
-    return np.asarray(np.exp(-0.5 * apart * apart))
+    """Squared exponential between every two times, 1 at no distance: (r, others)."""
+    covariance = np.subtract.outer(times_s, others_s)  # worked on in place: fresh memory takes longer than sums
+    covariance /= length_s
+    covariance *= covariance
+    covariance *= -0.5
+    return np.asarray(np.exp(covariance, out=covariance))
 
 
 def _variance(reach: FloatArray, ones: FloatArray) -> FloatArray:

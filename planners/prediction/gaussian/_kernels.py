@@ -31,7 +31,7 @@ class Basis(NamedTuple):
     crosses: np.ndarray
     """Covariances with the times to forecast, shape (E, r, T)."""
     variances: np.ndarray
-    """Variance of the forecasts, the motion's being 1, shape (F, T)."""
+    """Variance of the forecasts, the motion's being 1, shape (F, T); (0, T) if left to when they are needed."""
     ratios: np.ndarray
     """Variance of the noise, the motion's being 1, shape (F,)."""
 
@@ -105,6 +105,24 @@ def look_back(weight, total, variance, reaches, ones, white, s, place, past, pas
 
 
 @kernel
+def left_open(whitener, crosses, ones, precision):
+    """Variances (T,) of one process's forecasts, the motion's being 1; ``precision`` is the sum of its squared ones."""
+    explained, known = np.zeros(crosses.shape[1]), np.zeros(crosses.shape[1])
+    reach, units = np.empty(crosses.shape[1]), np.empty(crosses.shape[1])
+    for row in range(ones.shape[0]):
+        reach[:] = 0.0
+        for i in range(row + 1):
+            for h in range(reach.shape[0]):
+                reach[h] += whitener[i, row] * crosses[i, h]
+        for h in range(reach.shape[0]):
+            explained[h] += reach[h] * reach[h]
+            known[h] += reach[h] * ones[row]
+    for h in range(reach.shape[0]):
+        units[h] = max(0.0, 1.0 - explained[h]) + (1.0 - known[h]) ** 2 / precision
+    return units
+
+
+@kernel
 def look_ahead(weight, total, variance, whitener, crosses, units, ones, white, s, place, ahead, centers, var):
     """Add one process's forecasts from the present (T, 3); ``ahead`` (3, T) is work space."""
     r = ones.shape[0]
@@ -138,13 +156,13 @@ def follow(positions, scales, counts, basis, floor):
         The results of ``arc._kernels.follow``.
     """
     (n_processes, r), m, present = basis.logs.shape, positions.shape[1], counts.shape[0] - 1
-    per_length = n_processes // basis.crosses.shape[0]
+    per_length, remembered = n_processes // basis.crosses.shape[0], basis.variances.shape[0] > 0
     past, past_var = np.zeros((m, *basis.past.shape[1:3], 3)), np.zeros((m, *basis.past.shape[1:3]))
-    centers, var = np.zeros((m, basis.variances.shape[1], 3)), np.zeros((m, basis.variances.shape[1]))
+    centers, var = np.zeros((m, basis.crosses.shape[2], 3)), np.zeros((m, basis.crosses.shape[2]))
     noise = np.empty(m)
     white, sums = np.empty((n_processes, 3, r)), np.empty((n_processes, r, 5))
     weights, variances = np.empty(n_processes), np.empty(n_processes)
-    place, ahead = np.empty(3), np.empty((3, basis.variances.shape[1]))
+    place, ahead = np.empty(3), np.empty((3, basis.crosses.shape[2]))
     for j in range(m):
         for f in range(n_processes):
             whiten(positions[:, j], basis.whiteners[f], basis.ones[f], white[f], sums[f])
@@ -161,7 +179,8 @@ def follow(positions, scales, counts, basis, floor):
                     look_back(*shares, basis.past[f, o], known, seen, s, place, past[j, o], past_var[j, o])
                 else:
                     crosses = basis.crosses[f // per_length]
-                    whitener, units = basis.whiteners[f], basis.variances[f]
+                    whitener = basis.whiteners[f]
+                    units = basis.variances[f] if remembered else left_open(whitener, crosses, known, s[0])
                     look_ahead(*shares, whitener, crosses, units, known, seen, s, place, ahead, centers[j], var[j])
         noise[j] = max((weights * variances * basis.ratios).sum(), floor * floor)
         past[j] += positions[r - 1, j]
