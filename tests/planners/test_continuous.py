@@ -1,9 +1,12 @@
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from planners import Observation, Session, parse_planner
 from planners.certificate import _kernels as certificate
-from planners.continuous.planner import Found, TreePlanner
+from planners.continuous._kernels import FAILURE_WEIGHT, near_node
+from planners.continuous.planner import FAR_S, LARGEST_BOUND_M, NEAR_S, Found, TreePlanner
 from planners.continuous.workspace import Workspace, body_of
 from planners.problem import TimedPath
 from planners.steering import _kernels as steering
@@ -127,6 +130,42 @@ def test_margins_are_tried_only_where_they_can_help(
     assert [asked.count(now_s) for now_s in (0.0, 1.0, 2.0)] == searches
 
 
+@pytest.mark.parametrize(
+    ("lasting_s", "shares"),
+    [
+        ([9.0] * 4, [(1.0, 1.0), (1.0, 0.5), (1.0, 0.0), (1.0, -0.5)]),
+        ([1.0, 9.0, 9.0, 9.0], [(1.0, 1.0), (0.5, 0.5), (0.5, 0.0), (0.5, -0.5)]),
+        ([0.0] * 4, [(1.0, 1.0), (0.5, 0.5), (0.0, 0.0), (-0.5, -0.5)]),
+    ],
+)
+def test_the_next_seconds_keep_the_widest_margin_that_leaves_somewhere_to_go(
+    lasting_s: list[float], shares: list[tuple[float, float]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scenario = SCENARIOS[0]
+    asked: list[SampledWorld] = []
+
+    def lasting(planner: TreePlanner, trunk: TimedPath, world: SampledWorld, branches: int) -> Found:
+        seconds = lasting_s[len(asked)]
+        asked.append(world)
+        return Found(TimedPath(np.array([0.0, seconds]), np.tile(scenario.start, (2, 1))), reaches=False)
+
+    monkeypatch.setattr(TreePlanner, "grow_tree", lasting)
+    seen = observe(scenario)
+    noise = 0.002 * np.random.default_rng(4).normal(size=seen.positions_m.shape)
+    seen = seen._replace(positions_m=seen.positions_m + noise)
+    planned = session(scenario, predictor="portfolio")
+    planned.plan(scenario.start, 0.0, seen)
+    prediction = planned._problem.query.prediction
+    ahead_s, bounds_m = prediction.ahead_s, np.minimum(prediction.bounds_m, LARGEST_BOUND_M)
+    for world, (near, far) in zip(asked, shares, strict=True):
+        margins = (world.radii_m - prediction.radii_m) / bounds_m
+        np.testing.assert_allclose(margins[ahead_s <= NEAR_S], 2.0 * near, atol=1e-9)
+        np.testing.assert_allclose(margins[ahead_s >= FAR_S], 2.0 * far, atol=1e-9)
+        between = margins[(ahead_s > NEAR_S) & (ahead_s < FAR_S)]
+        assert (between >= 2.0 * far - 1e-9).all()
+        assert (between <= 2.0 * near + 1e-9).all()
+
+
 def test_an_arm_that_seems_to_be_touched_gets_out() -> None:
     start = np.full(6, 0.2)
     outward = ARM.jacobian(start)[:, 0] / np.linalg.norm(ARM.jacobian(start)[:, 0])
@@ -146,6 +185,26 @@ def test_an_arm_that_seems_to_be_touched_gets_out() -> None:
     assert plan.status == "Exact solution"
     assert gaps.min() > -0.002
     assert gaps[-1] > 0.0
+
+
+@given(seed=st.integers(0, 2**32 - 1), count=st.integers(1, 255), bounded=st.booleans())
+def test_the_near_node_is_the_nearest_in_time_of_a_small_tree(seed: int, count: int, bounded: bool) -> None:
+    rng = np.random.default_rng(seed)
+    space, body = Workspace.of(ARM, 255), body_of(ARM, 0.0)
+    tree, target = space.tree, space.target
+    tree.counts[0] = count
+    tree.states[:], tree.tips[:] = rng.normal(size=tree.states.shape), rng.normal(scale=0.2, size=tree.tips.shape)
+    tree.times[:], tree.failures[:] = rng.uniform(0.0, 40.0, size=255), rng.integers(0, 4, size=255)
+    target.posture[:], target.point[:] = rng.normal(size=6), rng.normal(scale=0.2, size=3)
+    goal, stop, before, bound = rng.normal(scale=0.2, size=3), 0.009, 25.0, 30.0 if bounded else np.inf
+    far = np.hypot(
+        np.linalg.norm(tree.tips - target.point, axis=1) / body.tip_speed,
+        np.linalg.norm(tree.states - target.posture, axis=1) / body.bend_rate,
+    ) * (1.0 + FAILURE_WEIGHT * tree.failures)
+    arrival = tree.times + (np.linalg.norm(tree.tips - goal, axis=1) - stop) / body.tip_speed
+    far[(tree.times > before) | (arrival >= bound) | (np.arange(255) >= count)] = np.inf
+    found = near_node(tree, target, before, goal, stop, bound, np.array([seed], np.uint64), body)
+    assert found == (np.argmin(far) if far.min() < np.inf else -1)
 
 
 @pytest.mark.parametrize("margin", [0.0, 0.004])
