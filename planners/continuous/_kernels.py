@@ -188,8 +188,6 @@ def near_node(tree, target, before, goal, stop, bound, rng, body):
     for k in range(int(stride * uniform(rng)), tree.counts[0], stride):
         if tree.times[k] > before:
             continue
-        if bound < math.inf and tree.times[k] + (_distance(tree.tips[k], goal) - stop) / body.tip_speed >= bound:
-            continue
         way = turn = 0.0
         for r in range(3):
             way += (tree.tips[k, r] - target.point[r]) ** 2
@@ -199,18 +197,37 @@ def near_node(tree, target, before, goal, stop, bound, rng, body):
         for c in range(target.posture.shape[0]):
             turn += (tree.states[k, c] - target.posture[c]) ** 2
         far = (per_tip * way + per_bend * turn) * shunned
-        if far < best:
-            best, found = far, k
+        if far >= best:
+            continue
+        if bound < math.inf and tree.times[k] + (_distance(tree.tips[k], goal) - stop) / body.tip_speed >= bound:
+            continue
+        best, found = far, k
     return found
+
+
+@kernel
+def _depth(tree, node):
+    """Number of nodes from the root to ``node``, both counted."""
+    length = 0
+    while node >= 0:
+        length, node = length + 1, tree.parents[node]
+    return length
+
+
+@kernel
+def nodes_to(tree, node):
+    """The nodes from the root to ``node``, in this order."""
+    nodes = np.empty(_depth(tree, node), np.int64)
+    for k in range(nodes.shape[0] - 1, -1, -1):
+        nodes[k] = node
+        node = tree.parents[node]
+    return nodes
 
 
 @kernel
 def _ancestor(tree, node, rng):
     """A node drawn from the path to ``node``."""
-    length, k = 0, node
-    while k >= 0:
-        length, k = length + 1, tree.parents[k]
-    for _ in range(int(length * uniform(rng))):
+    for _ in range(int(_depth(tree, node) * uniform(rng))):
         node = tree.parents[node]
     return node
 

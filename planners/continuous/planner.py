@@ -189,13 +189,14 @@ class ContinuousPlanner(TreePlanner):
         if self._last is None:
             return here
         times, path = self._last.path
-        ahead = times > now_s + 1e-9
-        if not ahead.any():
+        first = int(times.searchsorted(now_s + 1e-9, "right"))
+        if not 0 < first < len(times):
             return here
-        expected = np.array([np.interp(now_s, times, column) for column in path.T])
+        passed = (now_s - times[first - 1]) / (times[first] - times[first - 1])
+        expected = path[first - 1] + passed * (path[first] - path[first - 1])
         if np.abs(expected - q).max() > 1e-9:
             return here
-        return TimedPath(np.append(now_s, times[ahead]), np.vstack([q, path[ahead]]))
+        return TimedPath(np.append(now_s, times[first:]), np.vstack([q, path[first:]]))
 
 
 class ClairvoyantPlanner(TreePlanner):

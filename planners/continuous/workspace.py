@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from planners.certificate._kernels import HALVINGS, Stack
-from planners.continuous._kernels import Tree
+from planners.continuous._kernels import Tree, nodes_to
 from planners.problem import TimedPath
 from planners.steering._kernels import Body, Step, Target
 from scenarios.arm import ContinuumArm
@@ -51,10 +51,7 @@ class Workspace(NamedTuple):
 
     def path_to(self, node: int) -> TimedPath:
         """The tree's path from its root to ``node``."""
-        nodes = [node]
-        while (parent := int(self.tree.parents[nodes[-1]])) >= 0:
-            nodes.append(parent)
-        nodes.reverse()
+        nodes = nodes_to(self.tree, node)
         return TimedPath(self.tree.times[nodes], self.tree.states[nodes])
 
 

@@ -71,4 +71,5 @@ class Predictor(ABC):
         count = max(2, int(np.ceil(min(horizon_s, self.reach_s) / step_s - 1e-9)) + 1)
         now = float(observation.times_s[-1])
         centers, bounds = self.forecast(observation, now + step_s * np.arange(count, dtype=np.float64))
-        return Prediction(now, step_s, centers, observation.radii_m, bounds)
+        # By time in memory too: every world that is made of them would copy them again.
+        return Prediction(now, step_s, np.ascontiguousarray(centers), observation.radii_m, np.ascontiguousarray(bounds))
