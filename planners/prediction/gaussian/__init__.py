@@ -79,7 +79,8 @@ def _basis(times: FloatArray, targets: FloatArray, later: FloatArray) -> Basis:
         within, to_targets = _covariance(times, times, length), _covariance(times, targets.ravel(), length)
         crosses[e] = _covariance(times, later, length)
         for f, ratio in enumerate(RATIOS, e * len(RATIOS)):
-            factor, _ = dpotrf(within + ratio * one, lower=1)  # bare LAPACK: SciPy's checks take longer
+            # Bare LAPACK, since SciPy's checks take longer; the least ratio keeps the covariance positive definite.
+            factor, _ = dpotrf(within + ratio * one, lower=1)
             inverse, _ = dtrtrs(factor, one, lower=1)
             whiteners[f] = inverse.T
             ones[f] = np.ascontiguousarray(inverse).sum(axis=1)
