@@ -1,6 +1,7 @@
 """The planners around the search: what they keep between solves, and the margins they try."""
 
 import functools
+import math
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -47,12 +48,12 @@ class SearchSettings(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     horizon_s: float = Field(default=120.0, gt=0, le=3600, description="latest arrival considered, from now")
-    branches: int = Field(default=500, ge=1, le=10**7, description="budget of a search, in branches of the tree")
-    refinements: int = Field(default=8, ge=0, le=10**7, description="branches after the goal was first reached")
+    branches: int = Field(default=700, ge=1, le=10**7, description="budget of a search, in branches of the tree")
+    refinements: int = Field(default=20, ge=0, le=10**7, description="branches after the goal was first reached")
     enough: float = Field(default=1.1, ge=1, description="no refining below this multiple of the straight way's time")
-    bounces: int = Field(default=5, ge=0, le=1000, description="new postures a blocked branch tries")
+    bounces: int = Field(default=2, ge=0, le=1000, description="new postures a blocked branch tries")
     step_s: float = Field(default=0.5, gt=0.01, le=1, description="duration of a motion of the tree")
-    nodes: int = Field(default=12000, ge=100, le=10**7, description="largest tree")
+    nodes: int = Field(default=40000, ge=100, le=10**7, description="largest tree")
 
 
 class ContinuousSettings(SearchSettings):
@@ -70,7 +71,7 @@ class ClairvoyantSettings(SearchSettings):
     branches: int = Field(default=4000, ge=1, le=10**7, description="budget of a search, in branches of the tree")
     refinements: int = Field(default=400, ge=0, le=10**7, description="branches after the goal was first reached")
     enough: float = Field(default=1.0, ge=1, description="no refining below this multiple of the straight way's time")
-    nodes: int = Field(default=40000, ge=100, le=10**7, description="largest tree")
+    bounces: int = Field(default=5, ge=0, le=1000, description="new postures a blocked branch tries")
     restarts: int = Field(default=20, ge=1, le=10**6, description="searches made until one reaches the goal")
 
 
@@ -103,22 +104,25 @@ class TreePlanner(ArmPlanner):
         self._workspace = Workspace.of(arm, settings.nodes)
         self._rng = np.array([ou.RNG().uniformInt(0, 2**31 - 1)], np.uint64)
 
-    def grow_tree(self, trunk: TimedPath, world: SampledWorld, branches: int) -> Found:
-        """Search among the obstacles of ``world``, from what of the path ``trunk`` is free of them."""
+    def plant_tree(self, trunk: TimedPath, world: SampledWorld) -> None:
+        """Start a tree from what of the path ``trunk`` is free of the obstacles of ``world``."""
+        space = self._workspace
+        _kernels.plant(
+            space.tree, trunk.times_s, trunk.configurations_rad, MARGIN_M, self._body, world, space.step, space.stack
+        )
+
+    def grow_tree(self, world: SampledWorld, branches: int) -> Found:
+        """Search on from the tree as it stands, all of which is free of the obstacles of ``world``."""
         query, settings, space = self.problem.query, self._settings, self._workspace
-        start_s = float(trunk.times_s[0])
-        stop_m = GOAL_SHARE * query.goal_tolerance_m
-        tree, body = space.tree, self._body
-        tree.counts[:] = 0
-        _kernels.plant(tree, trunk.times_s, trunk.configurations_rad, MARGIN_M, body, world, space.step, space.stack)
+        tree, stop_m = space.tree, GOAL_SHARE * query.goal_tolerance_m
         budget = _kernels.Budget(
             branches, settings.refinements, settings.bounces, settings.enough, settings.step_s, MARGIN_M
         )
-        best, longest = _kernels.search(
-            query.goal_m, stop_m, start_s + settings.horizon_s, budget, self._rng, body, world, *space
-        )
+        end_s = tree.times[0] + settings.horizon_s
+        best, longest = _kernels.search(query.goal_m, stop_m, end_s, budget, self._rng, self._body, world, *space)
         self.state_checks += int(tree.counts[1])
         self.motion_checks += int(tree.counts[2])
+        tree.counts[1:] = 0
         return Found(space.path_to(best if best >= 0 else longest), best >= 0)
 
 
@@ -136,22 +140,26 @@ class ContinuousPlanner(TreePlanner):
     def search(self, q: FloatArray, now_s: float, stop: Callable[[], bool]) -> TimedPath | None:
         """A path to the goal with as wide a margin as can be had; else the one that stays safe longest."""
         trunk, branches = self._rest_of_last_path(q, now_s), self._budget(now_s)
-        found = self._widest_way(lambda world: self.grow_tree(trunk, world, branches), stop)
+        found = self._widest_way(trunk, branches, stop)
         self._last = found
         self._failures = 0 if found.reaches else self._failures + 1
         return found.path if len(found.path.times_s) > 1 else None
 
-    def _widest_way(self, grow: Callable[[SampledWorld], Found], stop: Callable[[], bool]) -> Found:
+    def _widest_way(self, trunk: TimedPath, branches: int, stop: Callable[[], bool]) -> Found:
         """Search among the obstacles with one margin after another, until a way to the goal is found.
 
         What is about to be executed keeps the widest margin with which the arm had anywhere to go; only further ahead,
-        where more will have been seen by then, is it the margin that is being tried.
+        where more will have been seen by then, is it the margin that is being tried. What is free among obstacles
+        is free among smaller ones: there the tree is grown further.
         """
-        found, near = list[Found](), None
+        found, near, before = list[Found](), None, -math.inf
         for share in self._shares():
             if found and stop():
                 break
-            tried = grow(self._world(share if near is None else near, share))
+            world = self._world(share if near is None else near, share)
+            if share > before:
+                self.plant_tree(trunk, world)
+            tried, before = self.grow_tree(world, branches), share
             found.append(tried)
             if share == MARGIN_SHARES[-1]:
                 # A way among obstacles is one among smaller ones too: where the smallest leave none, no margin does.
@@ -214,7 +222,8 @@ class ClairvoyantPlanner(TreePlanner):
         for _ in range(self._restarts):
             if found is not None and (found.reaches or stop()):
                 break
-            tried = self.grow_tree(here, world, self._branches)
+            self.plant_tree(here, world)
+            tried = self.grow_tree(world, self._branches)
             if found is None or tried.reaches or tried.path.times_s[-1] > found.path.times_s[-1]:
                 found = tried
         return found.path if found is not None and len(found.path.times_s) > 1 else None

@@ -24,29 +24,30 @@ ARC_SIZE = 20
 @kernel
 def place_section(arcs, i, c, s, radius, sin, cos):
     """Lay out section ``i`` of ``arcs`` after section i - 1, from its theta (cosine, sine), radius [m] and bend."""
-    row = arcs[i]
+    # Indices, not views of rows: counting references to views took some 4 % of temporal-ct's searches.
     if i == 0:
-        row[0], row[1], row[2] = 0.0, 0.0, 0.0
-        row[3], row[4], row[5] = c, s, 0.0
-        row[6], row[7], row[8] = -s, c, 0.0
-        row[9], row[10], row[11] = 0.0, 0.0, 1.0
+        arcs[0, 0], arcs[0, 1], arcs[0, 2] = 0.0, 0.0, 0.0
+        arcs[0, 3], arcs[0, 4], arcs[0, 5] = c, s, 0.0
+        arcs[0, 6], arcs[0, 7], arcs[0, 8] = -s, c, 0.0
+        arcs[0, 9], arcs[0, 10], arcs[0, 11] = 0.0, 0.0, 1.0
     else:
         # The end frame is the base frame turned by the bend about the arc's normal e, which carries no twist, so the
         # next direction differs from this one's by the difference of the thetas.
-        last = arcs[i - 1]
-        bent_sin, bent_cos = last[16], last[17]
-        turn_cos, turn_sin = c * last[18] + s * last[19], s * last[18] - c * last[19]
+        last = i - 1
+        bent_sin, bent_cos = arcs[last, 16], arcs[last, 17]
+        turn_cos = c * arcs[last, 18] + s * arcs[last, 19]
+        turn_sin = s * arcs[last, 18] - c * arcs[last, 19]
         for k in range(3):
-            d, e, z = last[3 + k], last[6 + k], last[9 + k]
+            d, e, z = arcs[last, 3 + k], arcs[last, 6 + k], arcs[last, 9 + k]
             t = bent_cos * d - bent_sin * z
-            row[k] = last[12 + k]
-            row[3 + k] = turn_cos * t + turn_sin * e
-            row[6 + k] = turn_cos * e - turn_sin * t
-            row[9 + k] = bent_cos * z + bent_sin * d
+            arcs[i, k] = arcs[last, 12 + k]
+            arcs[i, 3 + k] = turn_cos * t + turn_sin * e
+            arcs[i, 6 + k] = turn_cos * e - turn_sin * t
+            arcs[i, 9 + k] = bent_cos * z + bent_sin * d
     a, b = radius * (1.0 - cos), radius * sin
     for k in range(3):
-        row[12 + k] = row[k] + a * row[3 + k] + b * row[9 + k]
-    row[15], row[16], row[17], row[18], row[19] = radius, sin, cos, c, s
+        arcs[i, 12 + k] = arcs[i, k] + a * arcs[i, 3 + k] + b * arcs[i, 9 + k]
+    arcs[i, 15], arcs[i, 16], arcs[i, 17], arcs[i, 18], arcs[i, 19] = radius, sin, cos, c, s
 
 
 @kernel

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from planners import Observation, Session, parse_planner
@@ -115,9 +115,9 @@ def test_margins_are_tried_only_where_they_can_help(
     )
     asked: list[float] = []
 
-    def counted(planner: TreePlanner, trunk: TimedPath, world: SampledWorld, branches: int) -> Found:
-        asked.append(trunk.times_s[0])
-        return grow_tree(planner, trunk, world, branches)
+    def counted(planner: TreePlanner, world: SampledWorld, branches: int) -> Found:
+        asked.append(planner._workspace.tree.times[0])
+        return grow_tree(planner, world, branches)
 
     grow_tree = TreePlanner.grow_tree
     monkeypatch.setattr(TreePlanner, "grow_tree", counted)
@@ -144,7 +144,7 @@ def test_the_next_seconds_keep_the_widest_margin_that_leaves_somewhere_to_go(
     scenario = SCENARIOS[0]
     asked: list[SampledWorld] = []
 
-    def lasting(planner: TreePlanner, trunk: TimedPath, world: SampledWorld, branches: int) -> Found:
+    def lasting(planner: TreePlanner, world: SampledWorld, branches: int) -> Found:
         seconds = lasting_s[len(asked)]
         asked.append(world)
         return Found(TimedPath(np.array([0.0, seconds]), np.tile(scenario.start, (2, 1))), reaches=False)
@@ -164,6 +164,62 @@ def test_the_next_seconds_keep_the_widest_margin_that_leaves_somewhere_to_go(
         between = margins[(ahead_s > NEAR_S) & (ahead_s < FAR_S)]
         assert (between >= 2.0 * far - 1e-9).all()
         assert (between <= 2.0 * near + 1e-9).all()
+
+
+@pytest.mark.parametrize(
+    ("failures", "reaching", "events"),
+    [
+        (0, [], ["plant", "grow", "grow", "grow", "grow"]),
+        (0, [0], ["plant", "grow"]),
+        (1, [], ["plant", "grow", "grow"]),
+        (1, [1, 2], ["plant", "grow", "grow", "plant", "grow"]),
+    ],
+)
+def test_a_tree_is_grown_further_among_smaller_obstacles_and_planted_anew_among_larger_ones(
+    failures: int, reaching: list[int], events: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scenario = SCENARIOS[0]
+    told, worlds = list[str](), list[SampledWorld]()
+
+    def plant(planner: TreePlanner, trunk: TimedPath, world: SampledWorld) -> None:
+        told.append("plant")
+        worlds.clear()
+
+    def grow(planner: TreePlanner, world: SampledWorld, branches: int) -> Found:
+        assert all((world.radii_m <= before.radii_m).all() for before in worlds)
+        worlds.append(world)
+        reaches = told.count("grow") in reaching
+        told.append("grow")
+        return Found(TimedPath(np.array([0.0, 9.0]), np.tile(scenario.start, (2, 1))), reaches)
+
+    monkeypatch.setattr(TreePlanner, "plant_tree", plant)
+    monkeypatch.setattr(TreePlanner, "grow_tree", grow)
+    seen = observe(scenario)
+    noise = 0.002 * np.random.default_rng(4).normal(size=seen.positions_m.shape)
+    planned = session(scenario, predictor="portfolio")
+    planned._planner._failures = failures
+    planned.plan(scenario.start, 0.0, seen._replace(positions_m=seen.positions_m + noise))
+    assert told == events
+
+
+@given(seed=st.integers(0, 2**32 - 1))
+@settings(deadline=None, max_examples=20)
+def test_paths_of_a_tree_grown_further_are_free_of_what_it_was_grown_among_last(seed: int) -> None:
+    scenario = SCENARIOS[seed % len(SCENARIOS)]
+    planned = session(scenario, "temporal-ct[branches=40]", seed=seed % 1000)
+    planned.plan(scenario.start, 0.0, observe(scenario))
+    planner, world = planned._planner, planned._problem.query.world
+    assert isinstance(planner, TreePlanner)
+    for part, share in enumerate((1.5, 1.2, 1.0)):
+        smaller = make_world(world.start_s, world.step_s, world.centers_m, share * world.radii_m)
+        if part == 0:
+            planner.plant_tree(TimedPath(np.zeros(1), scenario.start[None]), smaller)
+        times, path = planner.grow_tree(smaller, 30).path
+        assert (path[0] == scenario.start).all()
+        dense = np.linspace(times[0], times[-1], 400)
+        states = np.stack([np.interp(dense, times, column) for column in path.T], axis=1)
+        gaps = clearances(states, dense, ARM.section_length_m, ARM.radius_m, smaller)
+        assert gaps.min() > min(gaps[0] - 1e-3, 0.0)
 
 
 def test_an_arm_that_seems_to_be_touched_gets_out() -> None:
