@@ -220,6 +220,9 @@ def test_paths_of_a_tree_grown_further_are_free_of_what_it_was_grown_among_last(
         states = np.stack([np.interp(dense, times, column) for column in path.T], axis=1)
         gaps = clearances(states, dense, ARM.section_length_m, ARM.radius_m, smaller)
         assert gaps.min() > min(gaps[0] - 1e-3, 0.0)
+    checked = planner.state_checks, planner.motion_checks
+    planner.grow_tree(smaller, 0)
+    assert (planner.state_checks, planner.motion_checks) == checked  # none is counted twice
 
 
 def test_an_arm_that_seems_to_be_touched_gets_out() -> None:
