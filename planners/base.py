@@ -4,10 +4,9 @@ from abc import abstractmethod
 from collections.abc import Callable
 
 from ompl import base as ob
-from ompl import geometric as og
 
 from planners.cubes import EdgeFilter
-from planners.problem import SpaceTimeProblem, TimedPath, read_state, write_state
+from planners.problem import SpaceTimeProblem, TimedPath, read_state, write_path
 from scenarios.arm import FloatArray
 from scenarios.scenario import STEP_S
 
@@ -54,11 +53,7 @@ class ArmPlanner(ob.Planner):
         found = self.search(q, now_s, ptc)
         if found is None:
             return ob.PlannerStatus(ob.PlannerStatus.TIMEOUT if ptc() else ob.PlannerStatus.INFEASIBLE)
-        si, path = self.problem.si, og.PathGeometric(self.problem.si)
-        state = si.allocState()
-        for configuration, time_s in zip(found.configurations_rad, found.times_s, strict=True):
-            write_state(state, configuration, time_s)
-            path.append(state)
+        path = write_path(self.problem.si, found)
         distance = self.problem.query.goal_distance(found.configurations_rad[-1])
         reached = distance <= self.problem.query.goal_tolerance_m
         # Without its name OMPL books the path under "Unknown".

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from scenarios.kernels.clearance import arc_clearances
-from scenarios.kernels.jit import kernel
+from scenarios.kernels.jit import bare_kernel
 from scenarios.kernels.kinematics import section_arcs
 
 CONTACT_M = 1e-4  # closer than this is a touch to the shared motion validator
@@ -33,7 +33,7 @@ class Stack(NamedTuple):
     """Work space, shape (2n,), [rad]."""
 
 
-@kernel
+@bare_kernel
 def is_clear(q0, t0, change, t1, margin, section_length, arm_radius, world, stack):
     """Whether a motion, linear in bending vectors, keeps ``margin`` [m] off every obstacle.
 
@@ -81,7 +81,7 @@ def is_clear(q0, t0, change, t1, margin, section_length, arm_radius, world, stac
     return True, states
 
 
-@kernel
+@bare_kernel
 def _is_proven(before, gaps_before, after, gaps_after, change, share, open_m, section_length):
     """Whether clearances at both ends add up to more than ``open_m`` and what points of the sections move.
 

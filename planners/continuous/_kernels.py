@@ -13,7 +13,7 @@ from planners.certificate._kernels import CONTACT_M, is_clear
 from planners.randomness._kernels import random_posture, uniform
 from planners.steering._kernels import ARRIVED_M, least_duration, steer
 from scenarios.kernels.clearance import arc_clearances
-from scenarios.kernels.jit import kernel
+from scenarios.kernels.jit import bare_kernel, kernel
 from scenarios.kernels.kinematics import section_arcs, tip_jacobian
 
 BLOCKED, RAN, REACHED, FULL = range(4)  # how a branch ended
@@ -62,43 +62,51 @@ class Tree(NamedTuple):
     """Nodes in the tree, states checked, motions checked."""
 
 
-@kernel
+@bare_kernel
+def _copy(values, out):
+    """Copy one array into another of the same length; ``out[:] = values`` would make a third, lest the two overlap."""
+    for k in range(out.shape[0]):
+        out[k] = values[k]
+
+
+@bare_kernel
 def _append(tree, state, tip, time, parent):
     """Append a node; returns its index."""
     k = tree.counts[0]
     tree.counts[0] = k + 1
-    for c in range(state.shape[0]):
-        tree.states[k, c] = state[c]
-    for r in range(3):
-        tree.tips[k, r] = tip[r]
+    _copy(state, tree.states[k])
+    _copy(tip, tree.tips[k])
     tree.times[k] = time
     tree.parents[k] = parent
     tree.failures[k] = 0
     return k
 
 
-@kernel
+@bare_kernel
 def _stand(q, time, body, world, stack):
-    """Lay out arcs and clearances at ``q`` in row 0 of the stack; returns the tip, a view of the arcs."""
+    """Lay out arcs and clearances at ``q`` in row 0 of the stack."""
     section_arcs(q, body.section_length, stack.arcs[0])
     arc_clearances(stack.arcs[0], time, body.radius, world, stack.gaps[0])
-    return stack.arcs[0, stack.arcs.shape[1] - 1, 12:15]
 
 
-@kernel
-def _is_too_close(margin, stack):
-    """Whether the state in row 0 of the stack does not keep the margin."""
-    return stack.gaps[0].min() <= margin + CONTACT_M
+@bare_kernel
+def _gap(stack):
+    """Clearance of the state in row 0 of the stack [m]."""
+    gap = math.inf
+    for i in range(stack.gaps.shape[1]):
+        gap = min(gap, stack.gaps[0, i])
+    return gap
 
 
-@kernel
+@bare_kernel
 def _is_free(tree, node, change, time, margin, body, world, stack):
     """Whether the step from ``node`` to ``time``, laid out in the stack, is free; counts what it took.
 
     An arm that stands closer than the margin to where obstacles may be has to get out without coming closer.
     """
-    if _is_too_close(margin, stack):
-        margin = stack.gaps[0].min() - CONTACT_M - ESCAPE_M
+    gap = _gap(stack)
+    if gap <= margin + CONTACT_M:
+        margin = gap - CONTACT_M - ESCAPE_M
     free, states = is_clear(
         tree.states[node], tree.times[node], change, time, margin, body.section_length, body.radius, world, stack
     )
@@ -107,21 +115,23 @@ def _is_free(tree, node, change, time, margin, body, world, stack):
     return free
 
 
-@kernel
+@bare_kernel
 def plant(tree, times, states, margin, body, world, step, stack):
     """Start the tree with the leading part of a path, times (k,) [s] and states (k, 2n) [rad], that is still free."""
+    tip_of, last = stack.arcs[:, :, 12:15], stack.arcs.shape[1] - 1
     tree.counts[0] = 0
-    _append(tree, states[0], _stand(states[0], times[0], body, world, stack), times[0], -1)
-    tip = stack.arcs[1, stack.arcs.shape[1] - 1, 12:15]
+    _stand(states[0], times[0], body, world, stack)
+    _append(tree, states[0], tip_of[0, last], times[0], -1)
     for k in range(1, times.shape[0]):
-        step.change[:] = states[k] - states[k - 1]
+        for c in range(step.change.shape[0]):
+            step.change[c] = states[k, c] - states[k - 1, c]
         section_arcs(states[k], body.section_length, stack.arcs[1])
         if not _is_free(tree, k - 1, step.change, times[k], margin, body, world, stack):
             break
-        _append(tree, states[k], tip, times[k], k - 1)
+        _append(tree, states[k], tip_of[1, last], times[k], k - 1)
 
 
-@kernel
+@bare_kernel
 def grow(tree, node, target, stop, steps, end_time, bounces, budget, rng, body, world, step, stack):
     """Grow a branch of at most ``steps`` from ``node`` to ``target``; returns how it ended and its last node.
 
@@ -161,21 +171,20 @@ def grow(tree, node, target, stop, steps, end_time, bounces, budget, rng, body, 
             continue
         node = _append(tree, step.state, tip, time, node)
         for r in range(3):
-            for c in range(step.change.shape[0]):
-                step.jacobian[r, c] = step.jacobian_after[r, c]
+            _copy(step.jacobian_after[r], step.jacobian[r])
         steps -= 1
         if reached:
-            return BLOCKED if _is_too_close(budget.margin, stack) else REACHED, node
+            return BLOCKED if _gap(stack) <= budget.margin + CONTACT_M else REACHED, node
     return RAN, node
 
 
-@kernel
+@bare_kernel
 def _distance(a, b):
     """Distance between two points (3,) [m]."""
     return math.sqrt((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 + (a[2] - b[2]) ** 2)
 
 
-@kernel
+@bare_kernel
 def near_node(tree, target, before, goal, stop, bound, rng, body):
     """A node not later than ``before`` [s] that is near ``target``; -1 when there is none.
 
@@ -205,7 +214,7 @@ def near_node(tree, target, before, goal, stop, bound, rng, body):
     return found
 
 
-@kernel
+@bare_kernel
 def _depth(tree, node):
     """Number of nodes from the root to ``node``, both counted."""
     length = 0
@@ -224,7 +233,7 @@ def nodes_to(tree, node):
     return nodes
 
 
-@kernel
+@bare_kernel
 def _ancestor(tree, node, rng):
     """A node drawn from the path to ``node``."""
     for _ in range(int(_depth(tree, node) * uniform(rng))):
@@ -232,16 +241,16 @@ def _ancestor(tree, node, rng):
     return node
 
 
-@kernel
+@bare_kernel
 def _choose(tree, tried, trunk, best, goal, stop, end_time, rng, body, target, stack):
     """Where the next branch leaves the tree (-1: nowhere) and how it runs: node, stop [m], steps; sets ``target``."""
     random_posture(rng, body.max_bend, target.posture)
-    target.point[:] = goal
+    _copy(goal, target.point)
     unlimited = tree.times.shape[0]
     if best < 0 and tried < DIRECT_RUNS:
         node = 0 if tried < DIRECT_RUNS // 2 else int(trunk * uniform(rng))
         if tried == 0:
-            target.posture[:] = tree.states[0]
+            _copy(tree.states[0], target.posture)
         return node, stop, unlimited
     if best >= 0 and uniform(rng) < REFINING_SHARE:
         return _ancestor(tree, best, rng), stop, unlimited
@@ -252,16 +261,16 @@ def _choose(tree, tried, trunk, best, goal, stop, end_time, rng, body, target, s
     steps = 1 + int(LONGEST_DETOUR * uniform(rng))
     if kind < GOAL_SHARE + EXPLORING_SHARE:
         section_arcs(target.posture, body.section_length, stack.arcs[1])
-        target.point[:] = stack.arcs[1, stack.arcs.shape[1] - 1, 12:15]
+        _copy(stack.arcs[1, stack.arcs.shape[1] - 1, 12:15], target.point)
         return near_node(tree, target, before, goal, stop, bound, rng, body), 0.0, steps
     node = int(tree.counts[0] * uniform(rng))
-    target.point[:] = tree.tips[node]
+    _copy(tree.tips[node], target.point)
     if uniform(rng) < 0.5:
-        target.posture[:] = tree.states[node]
+        _copy(tree.states[node], target.posture)
     return node, 0.0, steps
 
 
-@kernel
+@bare_kernel
 def search(goal, stop, end_time, budget, rng, body, world, tree, target, step, stack):
     """Grow the planted tree until its tip is within ``stop`` [m] of ``goal`` (3,), then refine the way there.
 
@@ -286,4 +295,13 @@ def search(goal, stop, end_time, budget, rng, body, world, tree, target, step, s
             best = last
             if tree.times[best] - root_time <= budget.enough * soonest:
                 break
-    return best, int(np.argmax(tree.times[: tree.counts[0]]))
+    return best, _latest(tree)
+
+
+@bare_kernel
+def _latest(tree):
+    """The node at the latest time, the first of several."""
+    latest = 0
+    for k in range(1, tree.counts[0]):
+        latest = k if tree.times[k] > tree.times[latest] else latest
+    return latest

@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 
-from scenarios.kernels.jit import kernel
+from scenarios.kernels.jit import bare_kernel
 
 
-@kernel
+@bare_kernel
 def uniform(rng):
     """Next number in [0, 1) of the splitmix64 generator whose state is ``rng`` (1,) uint64 (Steele et al. 2014)."""
     rng[0] += np.uint64(0x9E3779B97F4A7C15)
@@ -18,7 +18,7 @@ def uniform(rng):
     return float(z >> np.uint64(11)) * (1.0 / 9007199254740992.0)
 
 
-@kernel
+@bare_kernel
 def random_posture(rng, max_bend, out):
     """A configuration uniform over each section's disc of bends into ``out`` (2n,) [rad]."""
     for i in range(0, out.shape[0], 2):

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from scenarios.kernels.jit import kernel
+from scenarios.kernels.jit import bare_kernel
 
 DAMPING = (
     1e-5  # of the pseudo-inverse [m^2/rad^2]: the tip still follows to about 1 % at a tenth of a straight arm's reach
@@ -52,7 +52,7 @@ class Step(NamedTuple):
     """The same after it."""
 
 
-@kernel
+@bare_kernel
 def _solve3(a00, a01, a02, a11, a12, a22, x, y, z):
     """Solve the symmetric 3 x 3 system."""
     c00, c01, c02 = a11 * a22 - a12 * a12, a02 * a12 - a01 * a22, a01 * a12 - a02 * a11
@@ -65,7 +65,7 @@ def _solve3(a00, a01, a02, a11, a12, a22, x, y, z):
     )
 
 
-@kernel
+@bare_kernel
 def steer(q, tip, target, stop, duration, body, step):
     """Choose a step of about ``duration`` [s] from ``q`` (2n,) [rad] into ``step``, whose Jacobian is that at ``q``.
 
@@ -104,7 +104,7 @@ def steer(q, tip, target, stop, duration, body, step):
         change[i], change[i + 1] = step.state[i] - q[i], step.state[i + 1] - q[i + 1]
 
 
-@kernel
+@bare_kernel
 def least_duration(start, end, body, step):
     """Shortest time [s] in which ``step``, between tips ``start`` and ``end`` (3,) [m], keeps to the arm's rates.
 

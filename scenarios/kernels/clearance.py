@@ -10,11 +10,11 @@ import math
 
 import numpy as np
 
-from scenarios.kernels.jit import kernel
+from scenarios.kernels.jit import bare_kernel, kernel
 from scenarios.kernels.kinematics import ARC_SIZE, section_arcs
 
 
-@kernel
+@bare_kernel
 def distance_to_arc(arc, x, y, z):
     """Distance [m] from the point (x, y, z) to the backbone section ``arc`` (a row of ``section_arcs``)."""
     wx, wy, wz = x - arc[0], y - arc[1], z - arc[2]
@@ -30,7 +30,7 @@ def distance_to_arc(arc, x, y, z):
     return math.sqrt(min(wx * wx + wy * wy + wz * wz, ex * ex + ey * ey + ez * ez))
 
 
-@kernel
+@bare_kernel
 def _bracket(t, world):
     """Index of the sample at or before ``t`` and the share of the interval that has passed."""
     passed = (t - world.start_s) / world.step_s
@@ -43,7 +43,7 @@ def _bracket(t, world):
     return k, passed - k
 
 
-@kernel
+@bare_kernel
 def arc_clearances(arcs, t, arm_radius, world, out):
     """Signed distance of each section to the nearest obstacle at time ``t`` into ``out`` (n,) [m]; inf without any.
 
@@ -65,14 +65,14 @@ def arc_clearances(arcs, t, arm_radius, world, out):
     return smallest
 
 
-@kernel
+@bare_kernel
 def section_clearances(q, t, section_length, arm_radius, world, arcs, out):
     """``arc_clearances`` of the body at ``q`` (2n,) [rad]; ``arcs`` (n, ARC_SIZE) is work space."""
     section_arcs(q, section_length, arcs)
     return arc_clearances(arcs, t, arm_radius, world, out)
 
 
-@kernel
+@bare_kernel
 def motion_bounds(q0, q1, duration, section_length, speed, out):
     """Bound on how far each section and any obstacle may approach each other over a motion, into ``out`` (n,) [m].
 

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from scenarios.kernels.jit import kernel
+from scenarios.kernels.jit import bare_kernel, kernel
 
 # Below this bend the arc is computed as if bent by it: the tip moves by less than L * 1e-6 / 2, and no branch for the
 # straight section is needed anywhere.
@@ -21,7 +21,7 @@ MIN_BEND_RAD = 1e-6
 ARC_SIZE = 20
 
 
-@kernel
+@bare_kernel
 def place_section(arcs, i, c, s, radius, sin, cos):
     """Lay out section ``i`` of ``arcs`` after section i - 1, from its theta (cosine, sine), radius [m] and bend."""
     # Indices, not views of rows: counting references to views took some 4 % of temporal-ct's searches.
@@ -50,7 +50,7 @@ def place_section(arcs, i, c, s, radius, sin, cos):
     arcs[i, 15], arcs[i, 16], arcs[i, 17], arcs[i, 18], arcs[i, 19] = radius, sin, cos, c, s
 
 
-@kernel
+@bare_kernel
 def section_arcs(q, section_length, arcs):
     """Lay out the backbone's arcs in the base frame.
 
@@ -70,7 +70,7 @@ def section_arcs(q, section_length, arcs):
         place_section(arcs, i, c, s, section_length / bend, math.sin(bend), math.cos(bend))
 
 
-@kernel
+@bare_kernel
 def point_on_arc(arc, fraction_sin, fraction_cos, out):
     """Write the point of ``arc`` whose bend from the base has the given sine and cosine into ``out`` (3,), [m]."""
     a, b = arc[15] * (1.0 - fraction_cos), arc[15] * fraction_sin
@@ -137,7 +137,7 @@ def position_jacobian(q, section_length, arc_length, jacobian):
     return point[0], point[1], point[2]
 
 
-@kernel
+@bare_kernel
 def tip_jacobian(arcs, section_length, jacobian):
     """Derivative of the end of ``arcs``, laid out by ``section_arcs``, into ``jacobian`` (3, 2n) [m/rad]."""
     n = arcs.shape[0]
@@ -145,7 +145,7 @@ def tip_jacobian(arcs, section_length, jacobian):
         _section_columns(arcs[i], section_length, 1.0, arcs[n - 1, 12:15], i, jacobian)
 
 
-@kernel
+@bare_kernel
 def _section_columns(arc, section_length, share, point, i, jacobian):
     """Write the two columns of section ``i``, cut at ``share`` of its length: how ``point`` moves with (u, v)."""
     c, s = arc[18], arc[19]

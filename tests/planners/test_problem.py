@@ -13,7 +13,7 @@ from strategies import ARM, configurations, random_configurations, seeds
 from planners import _kernels
 from planners.goals import GoalConfigurations
 from planners.prediction import Prediction
-from planners.problem import Query, SpaceTimeProblem, read_state, write_state
+from planners.problem import Query, SpaceTimeProblem, TimedPath, read_state, write_path, write_state
 from scenarios import ContinuumArm, clearance, is_motion_valid, is_state_valid
 
 HORIZON_S = 30.0
@@ -51,6 +51,17 @@ def test_what_is_written_to_a_state_is_read(empty: SpaceTimeProblem, q: np.ndarr
     back, when = read_state(state_of(empty, q, time), 6)
     np.testing.assert_array_equal(back, q)
     assert when == time
+
+
+@given(st.lists(configurations(), min_size=1, max_size=5))
+def test_a_path_is_written_state_by_state(empty: SpaceTimeProblem, path: list[np.ndarray]) -> None:
+    timed = TimedPath(np.arange(len(path)) / 3, np.array(path))
+    states = write_path(empty.si, timed).getStates()
+    assert len(states) == len(path)
+    for state, q, time in zip(states, path, timed.times_s, strict=True):
+        back, when = read_state(state, 6)
+        np.testing.assert_array_equal(back, q)
+        assert when == time
 
 
 @given(configurations(), st.floats(0, HORIZON_S))

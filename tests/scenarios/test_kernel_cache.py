@@ -5,8 +5,11 @@ import importlib
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
+from numba.core.errors import NumbaError
 
+from scenarios.arm import FloatArray
 from scenarios.kernels import jit
 
 CALLEE = """
@@ -78,3 +81,19 @@ def test_the_cache_is_where_the_user_wants_it(monkeypatch: pytest.MonkeyPatch) -
     assert jit.cache_folder() == Path("/somewhere/else")
     monkeypatch.delenv("SUITE_CACHE_DIR")
     assert jit.cache_folder().name == "continuum-arm-suite"
+
+
+def test_a_bare_kernel_makes_no_array() -> None:
+    def last_row(rows: FloatArray) -> float:
+        total = 0.0
+        for value in rows[-1]:
+            total += value
+        return total
+
+    def doubled_sum(rows: FloatArray) -> float:
+        return float((2.0 * rows).sum())
+
+    rows = np.arange(6.0).reshape(2, 3)
+    assert jit.bare_kernel(last_row)(rows) == 12.0
+    with pytest.raises(NumbaError, match="NRT"):
+        jit.bare_kernel(doubled_sum)(rows)
