@@ -24,7 +24,6 @@ ARC_SIZE = 20
 @bare_kernel
 def place_section(arcs, i, c, s, radius, sin, cos):
     """Lay out section ``i`` of ``arcs`` after section i - 1, from its theta (cosine, sine), radius [m] and bend."""
-    # Indices, not views of rows: counting references to views took some 4 % of temporal-ct's searches.
     if i == 0:
         arcs[0, 0], arcs[0, 1], arcs[0, 2] = 0.0, 0.0, 0.0
         arcs[0, 3], arcs[0, 4], arcs[0, 5] = c, s, 0.0

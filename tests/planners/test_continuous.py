@@ -214,7 +214,9 @@ def test_paths_of_a_tree_grown_further_are_free_of_what_it_was_grown_among_last(
         smaller = make_world(world.start_s, world.step_s, world.centers_m, share * world.radii_m)
         if part == 0:
             planner.plant_tree(TimedPath(np.zeros(1), scenario.start[None]), smaller)
-        times, path = planner.grow_tree(smaller, 30).path
+        (times, path), reaches = planner.grow_tree(smaller, 30)
+        tree = planner._workspace.tree
+        assert reaches or times[-1] == tree.times[: tree.counts[0]].max()
         assert (path[0] == scenario.start).all()
         dense = np.linspace(times[0], times[-1], 400)
         states = np.stack([np.interp(dense, times, column) for column in path.T], axis=1)
