@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from benchmarks.timing import Line, seconds_per_call
-from planners import _kernels
 from planners.prediction import Prediction
-from planners.problem import Query, SpaceTimeProblem, write_state
+from planners.problem import Query, SpaceTimeProblem, _kernels, write_state
 from scenarios import ContinuumArm
 from scenarios.collision import CONTACT_TOLERANCE_M
 from scenarios.families.base import random_configuration

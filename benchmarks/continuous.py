@@ -9,10 +9,10 @@ import numpy as np
 from benchmarks.timing import Line
 from planners import PLANNERS, Session, parse_planner
 from scenarios import Scenario, generate
-from suite.audit import collides
-from suite.execution import Execution
-from suite.observation import Observer
-from suite.trial import TrialTask
+from suite.auditor import collides
+from suite.trial.execution import Execution
+from suite.trial.observation import Observer
+from suite.trial.task import TrialTask
 
 PLANNER = "temporal-ct"
 

@@ -15,8 +15,8 @@ from typing import NamedTuple
 import networkx as nx
 import numpy as np
 
-from planners.configurations import EnumeratedSpace
-from planners.cubes import ObstacleSteps
+from planners.search.configurations import EnumeratedSpace
+from planners.search.cubes import ObstacleSteps
 from scenarios import ContinuumArm
 from scenarios.arm import FloatArray
 

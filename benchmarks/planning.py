@@ -10,7 +10,7 @@ import numpy as np
 
 from benchmarks import literal, queries
 from benchmarks.timing import Line, cpu_seconds, seconds_per_call
-from planners.cubes import temporal_cubes_graph
+from planners.search.cubes import temporal_cubes_graph
 
 TOLERANCE = 1e-9
 

@@ -9,9 +9,9 @@ import numpy as np
 
 from benchmarks.literal import Query
 from planners import Observation, build_predictor
-from planners.configurations import enumerated_space
-from planners.cubes import LayeredGraph, LocalGraph, ObstacleSteps, temporal_cubes_graph
-from planners.temporal.graph import Window
+from planners.search.configurations import enumerated_space
+from planners.search.cubes import LayeredGraph, LocalGraph, ObstacleSteps, temporal_cubes_graph
+from planners.search.temporal_graph.graph import Window
 from scenarios import Scenario, generate
 from scenarios.arm import FloatArray
 
@@ -30,7 +30,7 @@ class Solved(NamedTuple):
 
 
 def solve(query: Query) -> Solved | None:
-    """The search of ``planners.temporal.planner``, with what lies between its steps."""
+    """The search of ``planners.paper.temporal``, with what lies between its steps."""
     arm, space, q, goal_m, obstacles = query
     local = temporal_cubes_graph(arm, space, q, goal_m, obstacles, WAITING)
     edges = local.graph.shortest_path(local.source, local.target, Window(0, 0), query.horizon)

@@ -19,7 +19,7 @@ from ompl import geometric as og
 from ompl import util as ou
 
 from benchmarks.strrt_queries import HORIZON_S, Query, Result, is_free, is_valid, queries
-from planners._kernels import clearance
+from planners.problem._kernels import clearance
 from planners.strrt import numbers_of
 from planners.strrt.trees._kernels import least_time, place_tip
 from scenarios.arm import ContinuumArm, FloatArray

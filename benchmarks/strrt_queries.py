@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from planners import _kernels
-from planners.goals import GoalConfigurations
 from planners.prediction import Prediction
+from planners.problem import _kernels
+from planners.problem.goals import GoalConfigurations
 from scenarios import Scenario, generate, sample_world
 from scenarios.arm import FloatArray
 from scenarios.collision import CONTACT_TOLERANCE_M

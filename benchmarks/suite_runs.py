@@ -20,13 +20,13 @@ from typing import NamedTuple
 from benchmarks.timing import Line, seconds_per_call
 from planners import Session, build_predictor, parse_planner
 from scenarios import generate
-from suite.audit import collides
-from suite.execution import Execution
-from suite.experiment import PRESETS, Experiment, make_experiment
-from suite.observation import Observer
-from suite.run import run_experiment
-from suite.run_folder import read_trials
-from suite.trial import TrialTask
+from suite.auditor import collides
+from suite.experiment.experiment import PRESETS, Experiment, make_experiment
+from suite.runner import run_experiment
+from suite.store.run_folder import read_trials
+from suite.trial.execution import Execution
+from suite.trial.observation import Observer
+from suite.trial.task import TrialTask
 
 KIB = 1024.0
 

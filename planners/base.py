@@ -5,8 +5,8 @@ from collections.abc import Callable
 
 from ompl import base as ob
 
-from planners.cubes import EdgeFilter
 from planners.problem import SpaceTimeProblem, TimedPath, read_state, write_path
+from planners.search.cubes import EdgeFilter
 from scenarios.arm import FloatArray
 from scenarios.scenario import STEP_S
 

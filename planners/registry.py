@@ -14,13 +14,13 @@ from planners.continuous.planner import (
     ContinuousPlanner,
     ContinuousSettings,
 )
-from planners.heuristics import HeuristicSettings, PurgingPlanner, WaitingPlanner
-from planners.potential_field import PotentialFieldPlanner, PotentialFieldSettings
+from planners.paper.heuristics import HeuristicSettings, PurgingPlanner, WaitingPlanner
+from planners.paper.potential_field import PotentialFieldPlanner, PotentialFieldSettings
+from planners.paper.temporal import TemporalPlanner, TemporalSettings
 from planners.problem import SpaceTimeProblem
-from planners.roadmap import PRMPlanner, PRMSettings
 from planners.sampling import RRTSettings, TreeSettings, build_rrt, build_rrtconnect
+from planners.sampling.roadmap import PRMPlanner, PRMSettings
 from planners.strrt import STRRTPlanner, STRRTSettings
-from planners.temporal.planner import TemporalPlanner, TemporalSettings
 from scenarios.spec import SpecError, known_name, parse_settings, parse_spec
 from scenarios.spec import split_specs as split_texts
 

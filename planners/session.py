@@ -9,11 +9,11 @@ from ompl import base as ob
 from ompl import util as ou
 
 from planners.base import ArmPlanner
-from planners.configurations import lattice_for
-from planners.goals import GoalConfigurations
 from planners.prediction import Observation, Prediction, build_predictor
 from planners.problem import Query, SpaceTimeProblem, read_state
+from planners.problem.goals import GoalConfigurations
 from planners.registry import PLANNERS, PlannerSpec
+from planners.search.configurations import lattice_for
 from scenarios.arm import ContinuumArm, FloatArray
 from scenarios.obstacle import Obstacle
 from scenarios.scenario import Scenario

@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from planners.certificate._kernels import CONTACT_M, is_clear
-from planners.randomness._kernels import random_posture, uniform
-from planners.steering._kernels import ARRIVED_M, least_duration, steer
+from planners.search.certificate._kernels import CONTACT_M, is_clear
+from planners.search.randomness._kernels import random_posture, uniform
+from planners.search.steering._kernels import ARRIVED_M, least_duration, steer
 from scenarios.kernels.clearance import arc_clearances
 from scenarios.kernels.jit import bare_kernel, kernel
 from scenarios.kernels.kinematics import section_arcs, tip_jacobian

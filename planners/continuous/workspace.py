@@ -4,10 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from planners.certificate._kernels import HALVINGS, Stack
 from planners.continuous._kernels import Tree, nodes_to
 from planners.problem import TimedPath
-from planners.steering._kernels import Body, Step, Target
+from planners.search.certificate._kernels import HALVINGS, Stack
+from planners.search.steering._kernels import Body, Step, Target
 from scenarios.arm import ContinuumArm
 from scenarios.kernels.kinematics import ARC_SIZE
 

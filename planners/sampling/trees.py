@@ -16,8 +16,8 @@ from ompl import geometric as og
 from pydantic import BaseModel, ConfigDict, Field
 
 from planners.base import ArmPlanner
-from planners.goals import OneGoal
 from planners.problem import SpaceTimeProblem, TimedPath, read_state
+from planners.problem.goals import OneGoal
 from scenarios.arm import FloatArray
 
 

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from planners.randomness._kernels import uniform
+from planners.search.randomness._kernels import uniform
 from planners.strrt.region._kernels import (
     Bound,
     count_sample,

@@ -8,8 +8,8 @@ import pytest
 from ompl import base as ob
 
 from planners import PLANNERS, Observation, Plan, Session, build_predictor, parse_planner
-from planners.goals import GoalConfigurations
 from planners.problem import Query, SpaceTimeProblem
+from planners.problem.goals import GoalConfigurations
 from scenarios import ContinuumArm, Obstacle, Scenario, Track, generate
 
 NAMES = list(PLANNERS)

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from planners._kernels import clearance, least_duration
-from planners.randomness._kernels import random_posture, uniform
+from planners.problem._kernels import clearance, least_duration
+from planners.search.randomness._kernels import random_posture, uniform
 from planners.strrt.trees._kernels import add_node, least_time, place_tip
 from scenarios.kernels.jit import kernel
 

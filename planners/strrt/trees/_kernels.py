@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from planners._kernels import least_duration, motion_valid, within_rates
+from planners.problem._kernels import least_duration, motion_valid, within_rates
 from scenarios.kernels.jit import kernel
 from scenarios.kernels.kinematics import section_arcs
 

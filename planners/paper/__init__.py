@@ -1,0 +1,1 @@
+"""The paper's planners: temporal graphs, two heuristics, a potential field."""

@@ -1,1 +1,0 @@
-"""Temporal graphs, and the paper's planner on them."""

@@ -1,0 +1,100 @@
+"""The second opinion: python-fcl's distances at close instants, with the kinematics and laws of ``scenarios``.
+
+It shares nothing with the certificate and proves nothing: a contact shorter than a sample, or shallower than the bow of
+an arc over its chord, can slip through. A body that moves at 0.5 m/s past a sphere is missed by at most 0.1 mm.
+"""
+
+import math
+
+import fcl
+import numpy as np
+
+from scenarios import Obstacle, Scenario
+from suite.auditor.engine import Contacts, FloatArray
+
+SAMPLE_S = 0.01
+_CAPSULES = 24  # per section: at most 0.1 mm between arc and chord
+
+
+def sampled_contacts(scenario: Scenario, times_s: FloatArray, states: FloatArray, end_s: float) -> Contacts:
+    """Contacts at whole seconds, at timed states and every SAMPLE_S over [times_s[0], end_s]."""
+    bodies = _Bodies(scenario)
+    instants = _instants(times_s, end_s)
+    centers = [obstacle.position(instants) for obstacle in scenario.obstacles]
+    swept_s, smallest = math.nan, math.inf
+    for i, t in enumerate(instants.tolist()):
+        whole = t == math.floor(t)
+        if not (whole or math.isnan(swept_s)):
+            continue
+        gap = bodies.clearance(_state_at(times_s, states, t), [center[i] for center in centers])
+        smallest = min(smallest, gap)
+        if gap <= 0.0:
+            swept_s = t if math.isnan(swept_s) else swept_s
+            if whole:
+                return Contacts(t, swept_s, smallest)
+    return Contacts(math.nan, swept_s, smallest)
+
+
+def _instants(times_s: FloatArray, end_s: float) -> FloatArray:
+    count = math.floor(end_s / SAMPLE_S)
+    # Divided, not multiplied: whole seconds come out whole.
+    regular = np.arange(count + 1) / round(1.0 / SAMPLE_S)
+    every = np.concatenate([regular, times_s, [end_s]])
+    return np.unique(every[(every >= times_s[0]) & (every <= end_s)])
+
+
+def _state_at(times_s: FloatArray, states: FloatArray, t: float) -> FloatArray:
+    return np.array([np.interp(t, times_s, states[:, column]) for column in range(states.shape[1])])
+
+
+class _Bodies:
+    """The arm as capsules and the obstacles, as FCL keeps them."""
+
+    def __init__(self, scenario: Scenario) -> None:
+        self._arm = scenario.arm
+        # All as long as their arcs, and so longer than their chords, by a few micrometres.
+        capsule = fcl.Capsule(self._arm.radius_m, self._arm.section_length_m / _CAPSULES)
+        self._capsules = [fcl.CollisionObject(capsule) for _ in range(self._arm.n_sections * _CAPSULES)]
+        self._shapes = [_object(obstacle) for obstacle in scenario.obstacles]
+        self._managers = _manager(self._capsules), _manager(self._shapes)
+
+    def clearance(self, q: FloatArray, centers: list[FloatArray]) -> float:
+        """Signed distance [m] between the arm at ``q`` (dof,) and obstacles at ``centers`` (3,) [m]; inf without.
+
+        Of several contacts it is the depth of the one that FCL meets first.
+        """
+        if not centers:
+            return math.inf
+        points = self._arm.backbone_points(q, _CAPSULES)
+        turns, middles = _turns_z_to(np.diff(points, axis=0)), 0.5 * (points[:-1] + points[1:])
+        for capsule, turn, middle in zip(self._capsules, turns, middles, strict=True):
+            capsule.setTransform(fcl.Transform(turn, middle))
+        for shape, center in zip(self._shapes, centers, strict=True):
+            shape.setTranslation(center)
+        for manager in self._managers:
+            manager.update()
+        data = fcl.DistanceData(request=fcl.DistanceRequest(enable_signed_distance=True))
+        self._managers[0].distance(self._managers[1], data, fcl.defaultDistanceCallback)
+        return float(data.result.min_distance)
+
+
+def _manager(objects: list[fcl.CollisionObject]) -> fcl.DynamicAABBTreeCollisionManager:
+    manager = fcl.DynamicAABBTreeCollisionManager()
+    manager.registerObjects(objects)
+    manager.setup()
+    return manager
+
+
+def _turns_z_to(directions: FloatArray) -> FloatArray:
+    """Rotations (N, 3, 3) whose third columns point along ``directions`` (N, 3): FCL's capsules lie along z."""
+    z = directions / np.linalg.norm(directions, axis=1, keepdims=True)
+    helper = np.eye(3)[np.argmin(np.abs(z), axis=1)]
+    x = np.cross(helper, z)
+    x /= np.linalg.norm(x, axis=1, keepdims=True)
+    return np.stack([x, np.cross(z, x), z], axis=2)
+
+
+def _object(obstacle: Obstacle) -> fcl.CollisionObject:
+    if obstacle.shape is None:
+        return fcl.CollisionObject(fcl.Sphere(obstacle.radius_m))
+    return fcl.CollisionObject(obstacle.shape.geometry(), fcl.Transform(obstacle.shape.rotation))

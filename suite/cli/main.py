@@ -1,0 +1,68 @@
+"""The door of the command line: which verbs there are, and what errors become.
+
+Whatever is heavy to import is imported inside the commands, so that ``suite --help`` answers at once.
+"""
+
+from __future__ import annotations
+
+import signal
+import sys
+from collections.abc import Sequence
+from types import FrameType
+
+import typer
+from typer.exceptions import TyperException
+
+from suite.cli.audit import audit
+from suite.cli.check import check
+from suite.cli.generate import generate
+from suite.cli.options import EXIT_INTERRUPTED, EXIT_USAGE, say
+from suite.cli.planners import planners
+from suite.cli.predictors import predictors
+from suite.cli.run import run
+from suite.cli.table import table
+from suite.cli.version import version
+
+app = typer.Typer(
+    help="Compare motion planners for continuum arms among moving obstacles.",
+    rich_markup_mode=None,  # rich help would double the time of --help
+    pretty_exceptions_enable=False,
+)
+for verb in (run, table, generate, planners, predictors, check, audit, version):
+    app.command()(verb)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command and return its exit code.
+
+    0 is done, 2 a usage or input error, 3 nothing to compare, 130 interrupted with everything finished saved.
+    """
+    signal.signal(signal.SIGTERM, _interrupt)
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    try:
+        code = app(given or ["--help"], prog_name="suite", standalone_mode=False)
+    except TyperException as error:
+        say(f"error: {error.format_message()}")
+        return EXIT_USAGE
+    except ValueError as error:
+        if not _is_a_users(error):
+            raise
+        say(f"error: {error}")
+        return EXIT_USAGE
+    except (KeyboardInterrupt, typer.Abort):
+        say("stopped before anything ran")
+        return EXIT_INTERRUPTED
+    return code if isinstance(code, int) else 0
+
+
+def _is_a_users(error: ValueError) -> bool:
+    """Whether the error is a mistake of the user, with a line written for them."""
+    from scenarios import ScenarioError, SpecError
+    from suite.errors import SuiteError
+
+    return isinstance(error, (ScenarioError, SpecError, SuiteError))
+
+
+def _interrupt(number: int, frame: FrameType | None) -> None:
+    """Let a request to terminate end a run as Ctrl-C does: saved and without orphans."""
+    raise KeyboardInterrupt

@@ -1,0 +1,63 @@
+"""Results published elsewhere, to stand beside ours."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pandas as pd
+
+from planners import parse_planner
+from scenarios import SpecError
+from suite.errors import SuiteError
+
+COLUMNS = {
+    "planner": "string",
+    "n_obstacles": "int64",
+    "time_s": "float64",
+    "success_percent": "float64",
+    "trials": "int64",
+}
+"""Columns of a file of published results, and their types."""
+
+
+def published_file(name: str) -> Path:
+    """The file behind ``--against``: ``published`` is the paper's Table I, anything else a path."""
+    return Path(__file__).parents[2] / "results" / "published_table1.csv" if name == "published" else Path(name)
+
+
+def read_published(file: Path) -> pd.DataFrame:
+    """Read a file of published results, one row per planner and number of obstacles.
+
+    Raises:
+        SuiteError: The file cannot be read, lacks a column, or has two rows for one planner and number of obstacles.
+    """
+    try:
+        published = pd.read_csv(file, dtype=COLUMNS)
+    except (OSError, ValueError) as error:
+        raise SuiteError(f"{file}: cannot be read: {error}") from None
+    missing = [name for name in COLUMNS if name not in published.columns]
+    if missing:
+        raise SuiteError(f"{file}: found no column {missing[0]}, allowed: {', '.join(COLUMNS)}")
+    if published.duplicated(["planner", "n_obstacles"]).any():
+        raise SuiteError(f"{file}: found two rows for one planner and n_obstacles, allowed: one")
+    return published[list(COLUMNS)]
+
+
+def beside(summary: pd.DataFrame, published: pd.DataFrame) -> pd.DataFrame:
+    """Put published success and time beside ours, where number of obstacles and planner agree.
+
+    Planners agree when they have the same settings, whatever they are called: ``temporal`` is ``t3``.
+    """
+    names = {name: f"published_{name}" for name in COLUMNS if name not in ("planner", "n_obstacles")}
+    theirs = published.assign(same=published["planner"].map(_identity)).drop(columns="planner").rename(columns=names)
+    ours = summary.assign(same=summary["planner"].map(_identity))
+    return ours.merge(theirs, how="left", on=["same", "n_obstacles"]).drop(columns="same")
+
+
+def _identity(label: str) -> str:
+    """Equal for labels of equal planners; a planner that is not ours goes by its name."""
+    try:
+        spec = parse_planner(label.lower())
+    except SpecError:
+        return label.lower()
+    return f"{spec.name}{spec.settings.model_dump_json()}"

@@ -1,0 +1,88 @@
+"""The comparison: trials summed up per number of obstacles and planner.
+
+Failures stay in: success rates and planning times are over all trials. How long, how far and how smooth a motion was
+can only be said of motions that reached the goal; those columns are medians over them, and their number is a column.
+
+A bound (a planner that knows the true motion) shows what is possible. It stands below the others, and every success is
+also given as a share of its own, over the scenarios that both were tried on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import pandas as pd
+
+from planners import is_bound
+from suite.auditor.verdicts import VERDICTS
+from suite.compare.statistics import wilson_interval
+
+ERRORS = ("planner_error", "planner_hung", "invalid_scenario")
+"""Outcomes that say something about the software rather than about the method."""
+
+
+def summarize(trials: pd.DataFrame, planners: Sequence[str] = ()) -> pd.DataFrame:
+    """One row per family, number of obstacles and planner.
+
+    Args:
+        trials: Frame of trial rows.
+        planners: Labels in the order in which they are to appear; others follow by name.
+    """
+    order = {label: position for position, label in enumerate(planners)}
+    rows: list[dict[str, Any]] = []
+    for (family, n_obstacles), among in trials.groupby(["family", "n_obstacles"], sort=False):
+        bounds = among[among["planner"].map(is_bound)]
+        rows += [
+            {"family": family, "n_obstacles": n_obstacles, "planner": label, **_summary(group, bounds)}
+            for label, group in among.groupby("planner", sort=False)
+        ]
+    position = [order.get(str(row["planner"]), len(order)) for row in rows]
+    by = ["family", "n_obstacles", "is_bound", "position", "planner"]
+    return pd.DataFrame(rows).assign(position=position).sort_values(by, ignore_index=True).drop(columns="position")
+
+
+def _summary(group: pd.DataFrame, bounds: pd.DataFrame) -> dict[str, object]:
+    reached = group[group["outcome"] == "reached"]
+    summary: dict[str, object] = {"is_bound": is_bound(group["planner"].iloc[0]), "trials": len(group)}
+    for verdict in VERDICTS:
+        summary |= _success(group[f"success_{verdict}"], f"success_{verdict}")
+    for verdict in VERDICTS:
+        summary[f"success_{verdict}_of_bound_percent"] = _share(group, bounds, f"success_{verdict}")
+    return summary | {
+        "planning_time_mean_s": group["planning_time_s"].mean(),
+        "planning_time_median_s": group["planning_time_s"].median(),
+        "solve_median_s": group["solve_p50_s"].median(),
+        "reached": len(reached),
+        "arrival_median_s": reached["arrival_time_s"].median(),
+        "tip_path_length_median_m": reached["tip_path_length_m"].median(),
+        "smoothness_paper_median_rad": reached["smoothness_paper_rad"].median(),
+        "errors": int(group["outcome"].isin(ERRORS).sum()),
+    }
+
+
+def _share(group: pd.DataFrame, bounds: pd.DataFrame, success: str) -> float:
+    """Successes in percent of those shown to be possible; NaN for bounds and where none was shown.
+
+    A share above 100 % is no error: a bound that fails proves nothing, and another planner may succeed there.
+    """
+    possible = bounds.dropna(subset=[success]).groupby("scenario_hash")[success].any()
+    common = group[group["scenario_hash"].isin(possible.index)]
+    shown = int(possible[possible.index.isin(common["scenario_hash"])].sum())
+    if is_bound(group["planner"].iloc[0]) or not shown:
+        return float("nan")
+    return 100 * int(common[success].sum()) / shown
+
+
+def _success(verdicts: pd.Series[bool], name: str) -> dict[str, float]:
+    """Success rate in percent with its 95 % interval; NaN when no trial was judged."""
+    judged = verdicts.dropna()
+    if judged.empty:
+        return {f"{name}_percent": float("nan"), f"{name}_low": float("nan"), f"{name}_high": float("nan")}
+    successes = int(judged.sum())
+    low, high = wilson_interval(successes, len(judged))
+    return {
+        f"{name}_percent": 100 * successes / len(judged),
+        f"{name}_low": 100 * low,
+        f"{name}_high": 100 * high,
+    }

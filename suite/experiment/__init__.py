@@ -1,0 +1,1 @@
+"""What is asked for: which planners meet which scenarios, under which conditions."""

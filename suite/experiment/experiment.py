@@ -1,0 +1,173 @@
+"""An experiment: which planners meet which scenarios, and every choice that decides the rows."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
+
+from planners import PLANNERS, PREDICTORS, PlannerSpec, parse_planner
+from scenarios import ContinuumArm, Scenario, generate, load_scenarios
+from scenarios.families import parse_family
+from scenarios.spec import known_name
+from suite.errors import SuiteError, one_line
+from suite.trial.task import TrialTask
+
+MAX_TRIALS_IN_ALL = 1_000_000
+
+
+class Experiment(BaseModel):
+    """Planners, scenarios and the conditions under which they meet; equal experiments give equal rows."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    planners: Annotated[tuple[str, ...], Field(min_length=1)]
+    """Planner specs, such as ``temporal[horizon=3]``."""
+    family: str = "orbit"
+    arm: str = ""
+    """Settings in which the arm differs from the default one, such as ``radius_m=0.015``."""
+    obstacles: Annotated[tuple[Annotated[int, Field(ge=0, le=100)], ...], Field(min_length=1)] = (1, 3, 5, 6)
+    """Numbers of obstacles; each gets ``trials`` scenarios."""
+    trials: Annotated[int, Field(ge=1, le=100_000)] = 10
+    seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
+    predictor: str | None = None
+    """Predictor for every planner; each planner's own if None."""
+    limits: bool = False
+    """Whether planners have to keep to the arm's bending rate and tip speed."""
+    noise_mm: Annotated[float, Field(ge=0, le=1000, allow_inf_nan=False)] = 0.0
+    """Standard deviation of the noise on observed positions [mm]."""
+    dropout: Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False)] = 0.0
+    """Probability that an observation is lost."""
+    scenario_files: tuple[str, ...] = ()
+    """Files to take the scenarios from, in place of ``family``, ``arm``, ``obstacles``, ``trials`` and ``seed``."""
+
+    @field_validator("planners")
+    @classmethod
+    def _known_planners(cls, planners: tuple[str, ...]) -> tuple[str, ...]:
+        labels = tuple(parse_planner(text).label for text in planners)
+        _refuse_repeats("planners", labels)
+        return labels
+
+    @field_validator("family")
+    @classmethod
+    def _known_family(cls, family: str) -> str:
+        parse_family(family)
+        return family
+
+    @field_validator("arm")
+    @classmethod
+    def _known_arm(cls, arm: str) -> str:
+        ContinuumArm.from_text(arm)
+        return arm
+
+    @field_validator("predictor")
+    @classmethod
+    def _known_predictor(cls, predictor: str | None) -> str | None:
+        return None if predictor is None else known_name("predictor", predictor, PREDICTORS)
+
+    @field_validator("obstacles")
+    @classmethod
+    def _different_obstacles(cls, obstacles: tuple[int, ...]) -> tuple[int, ...]:
+        _refuse_repeats("obstacles", obstacles)
+        return obstacles
+
+    def specs(self) -> list[PlannerSpec]:
+        """The planners, in the order they were asked for."""
+        return [parse_planner(text) for text in self.planners]
+
+    def scenarios(self) -> list[Scenario]:
+        """Load or generate the scenarios, in a fixed order.
+
+        Raises:
+            ScenarioError: A scenario file is broken.
+            SuiteError: Two scenarios are the same, or there are too many trials.
+        """
+        if self.scenario_files:
+            scenarios = [scenario for file in self.scenario_files for scenario in load_scenarios(file)]
+            _refuse_twins(scenarios)
+            self._refuse_too_many(len(scenarios))
+            return scenarios
+        self._refuse_too_many(len(self.obstacles) * self.trials)  # before they are generated
+        arm = ContinuumArm.from_text(self.arm)
+        return [s for n in self.obstacles for s in generate(self.family, n, self.trials, self.seed, arm)]
+
+    def _refuse_too_many(self, n_scenarios: int) -> None:
+        n_trials = n_scenarios * len(self.planners)
+        if n_trials > MAX_TRIALS_IN_ALL:
+            raise SuiteError(f"experiment: found {n_trials} trials in all, allowed {MAX_TRIALS_IN_ALL}")
+
+    def tasks(self, scenarios: Iterable[Scenario]) -> Iterator[TrialTask]:
+        """Every planner on every scenario: scenario by scenario, so that an unfinished run compares like with like."""
+        specs = self.specs()
+        for scenario in scenarios:
+            for spec in specs:
+                predictor = PLANNERS[spec.name].predictor_for(self.predictor)
+                yield TrialTask(scenario, spec, predictor, self.limits, self.seed, self.noise_mm, self.dropout)
+
+    @property
+    def name(self) -> str:
+        """A folder name: where the scenarios come from, and a hash of everything."""
+        source = Path(self.scenario_files[0]).stem if self.scenario_files else self.family.partition("[")[0]
+        digest = hashlib.sha256(self.model_dump_json().encode()).hexdigest()
+        return f"{source}-{digest[:8]}"
+
+
+def make_experiment(**values: Any) -> Experiment:
+    """Validate the fields of an experiment.
+
+    Raises:
+        SuiteError: A value is not allowed; one line that names the field, what was found and what is allowed.
+    """
+    try:
+        return Experiment(**values)
+    except ValidationError as error:
+        raise SuiteError(one_line(error)) from None
+
+
+PRESETS: dict[str, dict[str, Any]] = {
+    "table1": {"planners": ("t2", "t3", "h", "hs", "pf"), "obstacles": (1, 3, 5, 6), "trials": 100, "seed": 0},
+}
+"""Named experiments, as fields of ``Experiment``; ``table1`` is Table I of the paper."""
+
+
+def preset_fields(preset: str) -> dict[str, Any]:
+    """Fields of a named experiment, or of the one in a manifest.
+
+    Args:
+        preset: A name in ``PRESETS``, or a file ``manifest.json`` of a run.
+
+    Raises:
+        SuiteError: There is no such name or file, or no experiment in it.
+    """
+    if preset in PRESETS:
+        return PRESETS[preset]
+    if not preset.endswith(".json"):
+        raise SuiteError(f"preset: found {preset!r}, allowed {', '.join(PRESETS)} or the manifest.json of a run")
+    try:
+        fields = json.loads(Path(preset).read_text(encoding="utf-8"))["experiment"]
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise SuiteError(f"{preset}: found no experiment in it ({type(error).__name__})") from None
+    if not isinstance(fields, dict):
+        raise SuiteError(f"{preset}: experiment: found {fields!r}, allowed its fields by name")
+    return fields
+
+
+def _refuse_repeats(field: str, values: Iterable[object]) -> None:
+    value, times = Counter(values).most_common(1)[0]
+    if times > 1:
+        raise SuiteError(f"{field}: found {value} {times} times, allowed once")
+
+
+def _refuse_twins(scenarios: list[Scenario]) -> None:
+    """A trial is known by its scenario's content, and its seed and row by the scenario's name."""
+    by_hash: dict[str, str] = {}
+    for scenario in scenarios:
+        twin = by_hash.setdefault(scenario.content_hash, scenario.id)
+        if twin != scenario.id:
+            raise SuiteError(f"scenario files: found {scenario.id}, the same problem as {twin}, allowed once")
+    _refuse_repeats("scenario files", [scenario.id for scenario in scenarios])

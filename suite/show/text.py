@@ -1,0 +1,131 @@
+"""Tables as text: numbers for machines (CSV), sentences of numbers for people (Markdown, LaTeX, the terminal)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Literal, NamedTuple
+
+import pandas as pd
+from tabulate import tabulate
+
+from suite.auditor.verdicts import VERDICTS
+from suite.store.frames import FLOAT_FORMAT
+
+Format = Literal["markdown", "csv", "latex"]
+
+NOTES = """\
+Success in percent of all trials with its 95 % Wilson interval; each verdict is stricter than the one before: per step
+(no collision at whole seconds), swept (at no instant), executable (swept, within bending rate and tip speed). A bound
+knows the true motion and is not compared; "of bound" gives successes in percent of its, one verdict after another.
+Planning time is the sum over a trial's solves: mean / median over all trials. Solve is the median of the trials' median
+solves. Arrival, tip path and smoothness S are medians over the trials that reached the goal. Errors are trials in which
+the planner failed as a program: it raised, crashed or hung."""
+
+
+class Shown(NamedTuple):
+    """A column as people see it."""
+
+    title: str
+    cell: Callable[[Any], str]
+    """Makes the text from a row of the summary."""
+
+
+def as_csv(frame: pd.DataFrame) -> str:
+    """Every column, unrounded."""
+    return frame.to_csv(index=False, float_format=FLOAT_FORMAT, lineterminator="\n")
+
+
+def shown_columns(summary: pd.DataFrame) -> list[Shown]:
+    """The columns that people see of a summary; those that say nothing are left out."""
+    published = "published_success_percent" in summary
+    columns = [
+        Shown("family", lambda row: str(row.family)) if len(set(summary["family"])) > 1 else None,
+        Shown("obstacles", lambda row: str(row.n_obstacles)),
+        Shown("planner", lambda row: f"{row.planner} (bound)" if row.is_bound else str(row.planner)),
+        Shown("n", lambda row: str(row.trials)),
+        Shown("errors", lambda row: str(row.errors)) if summary["errors"].any() else None,
+        Shown("published %", lambda row: _number(row.published_success_percent)) if published else None,
+        *(Shown(f"{verdict.replace('_', ' ')} %", _success(verdict)) for verdict in VERDICTS),
+        Shown("of bound %", _shares) if summary["is_bound"].any() else None,
+        Shown("planning s", _planning),
+        Shown("published s", lambda row: _number(row.published_time_s)) if published else None,
+        Shown("solve ms", lambda row: _number(1e3 * row.solve_median_s)),
+        Shown("arrival s", lambda row: _number(row.arrival_median_s)),
+        Shown("tip path m", lambda row: _number(row.tip_path_length_median_m)),
+        Shown("S rad", lambda row: _number(row.smoothness_paper_median_rad)),
+    ]
+    return [column for column in columns if column is not None]
+
+
+def cells(summary: pd.DataFrame) -> tuple[list[str], list[list[str]]]:
+    """Titles and rows of text."""
+    columns = shown_columns(summary)
+    rows = [[column.cell(row) for column in columns] for row in summary.itertuples(index=False)]
+    return [column.title for column in columns], rows
+
+
+def render(summary: pd.DataFrame, format: Format) -> str:
+    """The summary in one of the formats for files."""
+    if format == "csv":
+        return as_csv(summary)
+    titles, rows = cells(summary)
+    return _tabulated(titles, rows, format)
+
+
+def render_pairs(pairs: pd.DataFrame, format: Format) -> str:
+    """A comparison in pairs in one of the formats for files."""
+    if format == "csv":
+        return as_csv(pairs)
+    counts = ["scenarios", "only_planner", "only_reference"]
+    rows = [
+        [str(pair["n_obstacles"]), pair["planner"], pair["reference"]]
+        + [str(pair[count]) for count in counts]
+        + [f"{pair[p]:.2g}" for p in ("p_mcnemar", "p_holm")]
+        for pair in pairs.to_dict("records")
+    ]
+    titles = ["obstacles", "planner", "reference", "scenarios", "only planner", "only reference", "p", "p, Holm"]
+    return _tabulated(titles, rows, format)
+
+
+def conditions(trials: pd.DataFrame) -> str:
+    """Under which conditions the trials were run, in one sentence."""
+
+    def values(name: str) -> str:
+        return ", ".join(f"{value:g}" if isinstance(value, float) else str(value) for value in trials[name].unique())
+
+    limits = ", ".join("on" if limits else "off" for limits in trials["limits"].unique())
+    return (
+        f"Predictor {values('predictor')}; motion limits {limits}; observation noise {values('noise_mm')} mm,"
+        f" dropout {values('dropout')}; seed {values('experiment_seed')}."
+    )
+
+
+def as_markdown_page(title: str, trials: pd.DataFrame, summary: pd.DataFrame) -> str:
+    """The text of ``table.md``."""
+    return f"# {title}\n\n{conditions(trials)}\n\n{render(summary, 'markdown')}\n{NOTES}\n"
+
+
+def _tabulated(titles: list[str], rows: list[list[str]], format: Format) -> str:
+    style = {"markdown": "github", "latex": "latex_booktabs"}[format]
+    return tabulate(rows, titles, tablefmt=style, disable_numparse=True) + "\n"
+
+
+def _success(verdict: str) -> Callable[[Any], str]:
+    def cell(row: Any) -> str:
+        percent, low, high = (getattr(row, f"success_{verdict}_{part}") for part in ("percent", "low", "high"))
+        return "-" if pd.isna(percent) else f"{percent:.0f} [{low:.0f}, {high:.0f}]"
+
+    return cell
+
+
+def _shares(row: Any) -> str:
+    shares = [getattr(row, f"success_{verdict}_of_bound_percent") for verdict in VERDICTS]
+    return "-" if pd.isna(shares).all() else " / ".join("-" if pd.isna(share) else f"{share:.0f}" for share in shares)
+
+
+def _planning(row: Any) -> str:
+    return f"{_number(row.planning_time_mean_s)} / {_number(row.planning_time_median_s)}"
+
+
+def _number(value: Any) -> str:
+    return "-" if pd.isna(value) else f"{value:.3g}"

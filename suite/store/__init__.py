@@ -1,0 +1,1 @@
+"""What a run has left: its folder, its journal, its rows as frames."""

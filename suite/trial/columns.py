@@ -1,0 +1,112 @@
+"""The columns of a trial row, declared once.
+
+The journal's table, ``trials.csv``, the frames read back from either and the documentation are all made from
+``COLUMNS``. A value that a trial does not have (the arrival time of an arm that never arrived) is None in Python and an
+empty cell in files.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, Literal, NamedTuple
+
+from suite.auditor.verdicts import VERDICTS
+
+DType = Literal["string", "boolean", "Int64", "float64"]
+"""Names of the pandas types that can hold a missing value."""
+
+OUTCOMES = ("reached", "collided", "timeout", "stuck", "planner_error", "planner_hung", "invalid_scenario")
+
+
+class Column(NamedTuple):
+    """One column of a trial row."""
+
+    name: str
+    dtype: DType
+    unit: str
+    """Physical unit, empty for names, flags and counts."""
+    meaning: str
+    is_timing: bool = False
+    """True for wall-clock readings, the only columns that may differ between two runs of one experiment."""
+
+
+IDENTITY = (
+    Column("scenario_id", "string", "", "name of the scenario"),
+    Column("scenario_hash", "string", "", "hash of the scenario's content"),
+    Column("family", "string", "", "generator family of the scenario"),
+    Column("n_obstacles", "Int64", "", "number of moving obstacles"),
+    Column("planner", "string", "", "planner as it was asked for"),
+    Column("settings", "string", "", "every setting of the planner, as JSON"),
+    Column("predictor", "string", "", "predictor of the obstacles' motion"),
+    Column("limits", "boolean", "", "whether planners had to keep to the arm's motion limits"),
+    Column("noise_mm", "float64", "mm", "standard deviation of the noise on observed positions"),
+    Column("dropout", "float64", "", "share of observations that were lost"),
+    Column("experiment_seed", "Int64", "", "seed of the experiment"),
+    Column("trial_seed", "Int64", "", "seed of this trial, derived from experiment seed, scenario and planner"),
+)
+
+VIOLATIONS = tuple(
+    column
+    for verdict in VERDICTS
+    for column in (
+        Column(f"violation_{verdict}_time_s", "float64", "s", f"time of the first {verdict} violation"),
+        Column(f"violation_{verdict}_kind", "string", "", f"kind of the first {verdict} violation"),
+    )
+)
+
+MEASURED = (
+    Column("outcome", "string", "", "how the trial ended: " + ", ".join(OUTCOMES)),
+    Column("success_per_step", "boolean", "", "goal reached with no collision at a whole second"),
+    Column("success_swept", "boolean", "", "goal reached with no collision at any instant"),
+    Column("success_executable", "boolean", "", "swept, and within the arm's bending rate and tip speed"),
+    *VIOLATIONS,
+    Column("arrival_time_s", "float64", "s", "first timed state with the tip within the goal tolerance"),
+    Column("planning_time_s", "float64", "s", "wall time of all solves of the trial", is_timing=True),
+    Column("n_solves", "Int64", "", "number of solves"),
+    Column("solve_p50_s", "float64", "s", "median wall time of a solve", is_timing=True),
+    Column("solve_p95_s", "float64", "s", "95th percentile of the wall time of a solve", is_timing=True),
+    Column("solve_max_s", "float64", "s", "longest wall time of a solve", is_timing=True),
+    Column("tip_path_length_m", "float64", "m", "length of the executed tip path"),
+    Column("smoothness_paper_rad", "float64", "rad", "the paper's smoothness S of what was executed, theta wrapped"),
+    Column("smoothness_bending_rad", "float64", "rad", "sum of the changes of the bending vectors"),
+    Column("min_clearance_m", "float64", "m", "smallest clearance to a true obstacle"),
+    Column("state_checks", "Int64", "", "states checked for validity while planning"),
+    Column("motion_checks", "Int64", "", "motions checked for validity while planning"),
+    Column("message", "string", "", "what went wrong, when something did"),
+    Column("audit_time_s", "float64", "s", "wall time of the audit", is_timing=True),
+    Column("trial_wall_s", "float64", "s", "wall time of the whole trial", is_timing=True),
+)
+
+COLUMNS: tuple[Column, ...] = IDENTITY + MEASURED
+COLUMN_NAMES = tuple(column.name for column in COLUMNS)
+TIMING_NAMES = frozenset(column.name for column in COLUMNS if column.is_timing)
+
+Row = dict[str, Any]
+"""One trial: a value, or None, for every name in ``COLUMN_NAMES``, in that order."""
+
+
+def complete_row(values: Mapping[str, Any]) -> Row:
+    """Put ``values`` into the order of ``COLUMNS``, with None for what is missing and for NaN.
+
+    Raises:
+        KeyError: ``values`` has a name that no column has.
+    """
+    unknown = sorted(set(values) - set(COLUMN_NAMES))
+    if unknown:
+        raise KeyError(f"no such column: {', '.join(unknown)}")
+    return {column.name: _plain(column.dtype, values.get(column.name)) for column in COLUMNS}
+
+
+def _plain(dtype: DType, value: Any) -> str | bool | int | float | None:
+    """Turn a NumPy or Python scalar into the plain Python value that a column of this type holds."""
+    if value is None or value != value:  # NaN is the only value that differs from itself
+        return None
+    return _PLAIN_TYPES[dtype](value)
+
+
+_PLAIN_TYPES: dict[DType, Callable[[Any], str | bool | int | float]] = {
+    "string": str,
+    "boolean": bool,
+    "Int64": int,
+    "float64": float,
+}

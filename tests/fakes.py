@@ -1,0 +1,70 @@
+"""Tasks without planners, for the tests of what runs and stores them; importable by worker processes."""
+
+import os
+import signal
+import time
+from typing import NamedTuple
+
+import numpy as np
+from pydantic import BaseModel
+
+from scenarios import Scenario
+from suite.trial.task import TrialResult, TrialTask, trial_row
+
+
+class FakeSettings(BaseModel):
+    gain: float = 0.5
+
+
+class FakeSpec(NamedTuple):
+    label: str
+    name: str = "fake"
+    settings: BaseModel = FakeSettings()
+
+
+def make_scenario(number: int) -> Scenario:
+    return Scenario(id=f"fake-{number:04d}", family="fake", start_rad=(0.0,) * 6, goal_m=(0.1, 0.001 * number, 0.3))
+
+
+def make_tasks(labels: list[str], trials: int = 1) -> list[TrialTask]:
+    return [
+        TrialTask(make_scenario(number), FakeSpec(label), predictor="cubic", limits=False, seed=0)
+        for number in range(trials)
+        for label in labels
+    ]
+
+
+def prepare() -> None:
+    pass
+
+
+def cannot_prepare() -> None:
+    os._exit(7)
+
+
+def behave(task: TrialTask) -> TrialResult:
+    """Do what the planner's label says, or reach the goal about every second time."""
+    match task.spec.label:
+        case "raise":
+            raise ValueError("two\nlines")
+        case "hang":
+            time.sleep(1000)
+        case "die":
+            os.kill(os.getpid(), signal.SIGKILL)
+        case "quit":
+            os._exit(0)
+    rng = np.random.default_rng(task.trial_seed)
+    reached = bool(rng.random() < 0.5)
+    measured = {
+        "outcome": "reached" if reached else "collided",
+        "success_per_step": reached,
+        "success_swept": reached and bool(rng.random() < 0.5),
+        "arrival_time_s": rng.uniform(1, 50) if reached else None,
+        "planning_time_s": time.perf_counter() % 1,
+        "n_solves": int(rng.integers(1, 9)),
+    }
+    return TrialResult(trial_row(task, measured), np.arange(3.0), rng.normal(size=(3, 6)))
+
+
+def prepare_nothing(specs: object, examples: object) -> None:
+    pass
