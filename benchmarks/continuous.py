@@ -7,7 +7,7 @@ import time
 import numpy as np
 
 from benchmarks.timing import Line
-from planners import PLANNERS, Session, parse_planner
+from planners import Session, parse_planner
 from scenarios import Scenario, generate
 from suite.auditor import collides
 from suite.trial.execution import Execution
@@ -33,7 +33,7 @@ def solve_times(quick: bool) -> list[Line]:
 
 def _task(scenario: Scenario, noise_mm: float) -> TrialTask:
     spec = parse_planner(PLANNER)
-    return TrialTask(scenario, spec, PLANNERS[spec.name].predictor, limits=False, seed=0, noise_mm=noise_mm)
+    return TrialTask(scenario, spec, spec.predictor, limits=False, seed=0, noise_mm=noise_mm)
 
 
 def _lines(trials: list[tuple[list[float], list[float]]], where: str) -> list[Line]:

@@ -1,18 +1,24 @@
 """The methods: prediction, the OMPL space-time problem, and every planner."""
 
+from planners.base import ArmPlanner, NoSettings
 from planners.prediction import PREDICTORS, Observation, build_predictor
-from planners.registry import ALIASES, PLANNERS, PlannerEntry, PlannerSpec, is_bound, parse_planner, split_specs
+from planners.problem import TimedPath
+from planners.registry import ALIASES, PLANNERS, is_bound
 from planners.session import Plan, Session, check_fit, warm_up
+from planners.spec import Failure, PlannerSpec, parse_planner, split_specs
 
 __all__ = [
     "ALIASES",
     "PLANNERS",
     "PREDICTORS",
+    "ArmPlanner",
+    "Failure",
+    "NoSettings",
     "Observation",
     "Plan",
-    "PlannerEntry",
     "PlannerSpec",
     "Session",
+    "TimedPath",
     "build_predictor",
     "check_fit",
     "is_bound",

@@ -1,27 +1,93 @@
-"""What the house's own planners share: they are OMPL planners, and all they write is a search."""
+"""What a planner is: an OMPL planner that says of itself what the suite has to know, and writes a search."""
 
+import math
 from abc import abstractmethod
 from collections.abc import Callable
+from typing import Any, ClassVar, Literal
 
 from ompl import base as ob
+from pydantic import BaseModel, ConfigDict
 
 from planners.problem import SpaceTimeProblem, TimedPath, read_state, write_path
 from planners.search.cubes import EdgeFilter
-from scenarios.arm import FloatArray
+from scenarios.arm import ContinuumArm, FloatArray
 from scenarios.scenario import STEP_S
+
+Commitment = Literal["path", "while_valid", "step"]
+"""When a planner is asked again: at the end of its path (Algorithm 2), as soon as the newest prediction makes the rest
+of its path invalid or that path does not lead to the goal, or at every step."""
+
+
+class NoSettings(BaseModel):
+    """Settings of a planner that has none."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
 
 
 class ArmPlanner(ob.Planner):
-    """An ``ompl.base.Planner`` whose ``search`` works on arrays; OMPL states are touched at the ends only."""
+    """An ``ompl.base.Planner`` whose ``search`` works on arrays; OMPL states are touched at the ends only.
 
-    def __init__(self, problem: SpaceTimeProblem, name: str) -> None:
-        """Plan on ``problem``; ``name`` is the name OMPL reports."""
-        super().__init__(problem.si, name)
+    The class attributes are all that the suite asks of a planner: one class is a planner.
+    """
+
+    name: ClassVar[str] = ""
+    """What it is called in specs and tables; the class's own name if empty."""
+    settings_model: ClassVar[type[BaseModel]] = NoSettings
+    """Its settings with types, defaults, limits and descriptions; every field is a key in ``name[key=value]``."""
+    summary: ClassVar[str] = ""
+    """What it does, in a line."""
+    source: ClassVar[str] = ""
+    """Where it comes from: authors, venue, year."""
+    commitment: ClassVar[Commitment] = "step"
+    """When it is asked again."""
+    horizon_s: ClassVar[float] = 1.0
+    """How far ahead it is given a prediction [s], unless its settings have a ``horizon_s``; see ``look_ahead_s``."""
+    prediction_step_s: ClassVar[float] = 1.0
+    """Spacing of the predicted positions it is given [s]."""
+    prediction_margin: ClassVar[float] = 0.0
+    """Obstacles are grown by this many standard deviations of their predicted position's error."""
+    largest_bound_m: ClassVar[float] = math.inf
+    """Standard deviations are taken for no more than this [m]."""
+    predictor: ClassVar[str] = "cubic"
+    """The predictor it works with unless a run asks for another."""
+    is_bound: ClassVar[bool] = False
+    """Sees the true future: shows what is possible and is never ranked."""
+
+    settings: Any
+    """What it was asked for with, an instance of ``settings_model``."""
+
+    def __init__(self, problem: SpaceTimeProblem, settings: BaseModel) -> None:
+        """Plan on ``problem``."""
+        super().__init__(problem.si, self.known_as())
         self.problem = problem
+        self.settings = settings
         self.state_checks = 0
         """Configurations checked by this planner's own kernels, beside those the shared checker counts."""
         self.motion_checks = 0
         """Motions checked by this planner's own kernels, beside those the shared validator counts."""
+
+    @classmethod
+    def known_as(cls) -> str:
+        """Its name in specs and tables."""
+        return cls.name or cls.__name__
+
+    @classmethod
+    def look_ahead_s(cls, settings: Any) -> float:
+        """How far ahead it looks with ``settings`` [s]."""
+        return float(getattr(settings, "horizon_s", cls.horizon_s))
+
+    @classmethod
+    def predictor_for(cls, asked: str | None) -> str:
+        """Name of the predictor it works with when a run asks for ``asked``, or for each planner's own (None)."""
+        return "truth" if cls.is_bound else asked or cls.predictor
+
+    @classmethod
+    def check_fit(cls, settings: Any, arm: ContinuumArm) -> None:
+        """Refuse settings that do not fit ``arm``, before anything is built.
+
+        Raises:
+            ScenarioError: A table of this planner's would be too large.
+        """
 
     def motion_filter(self, now_s: float) -> EdgeFilter | None:
         """Which motions between two whole steps from ``now_s`` the validator allows; None where limits do not bind."""
@@ -59,3 +125,14 @@ class ArmPlanner(ob.Planner):
         # Without its name OMPL books the path under "Unknown".
         self.getProblemDefinition().addSolutionPath(path, not reached, distance, self.getName())
         return ob.PlannerStatus(ob.PlannerStatus.EXACT_SOLUTION if reached else ob.PlannerStatus.APPROXIMATE_SOLUTION)
+
+
+class ReplanningPlanner(ArmPlanner):
+    """A planner of whole ways through a long prediction: asked again as soon as the newest one invalidates its path."""
+
+    commitment: ClassVar[Commitment] = "while_valid"
+    prediction_step_s = 0.25
+    prediction_margin = 1.0
+    largest_bound_m = 0.005
+    """What is less certain will have been observed again by then."""
+    predictor = "portfolio"

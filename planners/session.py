@@ -8,12 +8,10 @@ import numpy as np
 from ompl import base as ob
 from ompl import util as ou
 
-from planners.base import ArmPlanner
 from planners.prediction import Observation, Prediction, build_predictor
 from planners.problem import Query, SpaceTimeProblem, read_state
 from planners.problem.goals import GoalConfigurations
-from planners.registry import PLANNERS, PlannerSpec
-from planners.search.configurations import lattice_for
+from planners.spec import PlannerSpec, is_outside, load
 from scenarios.arm import ContinuumArm, FloatArray
 from scenarios.obstacle import Obstacle
 from scenarios.scenario import Scenario
@@ -55,14 +53,14 @@ class Session:
         Raises:
             SpecError: Unknown predictor.
         """
-        entry = PLANNERS[spec.name]
-        self.commitment = entry.commitment
-        self._iterations = getattr(spec.settings, "iterations", None)
-        self._horizon_s = entry.horizon_s(spec.settings)
-        self._step_s = entry.prediction_step_s
-        self._margin, self._largest_bound_m = entry.prediction_margin, entry.largest_bound_m
+        kind, settings = load(spec)
+        self.commitment = kind.commitment
+        self._iterations = getattr(settings, "iterations", None)
+        self._horizon_s = kind.look_ahead_s(settings)
+        self._step_s = kind.prediction_step_s
+        self._margin, self._largest_bound_m = kind.prediction_margin, kind.largest_bound_m
         self._scenario, self._limits = scenario, limits
-        self._predictor = build_predictor(entry.predictor_for(predictor), scenario)
+        self._predictor = build_predictor(kind.predictor_for(predictor), scenario)
         self._rng = np.random.default_rng(seed)
         _seed_ompl(seed)
         nothing = Prediction(0.0, 1.0, np.empty((2, 0, 3)), np.empty(0), np.empty((2, 0)))
@@ -70,7 +68,7 @@ class Session:
         self._goals = GoalConfigurations(
             scenario.arm, scenario.goal, scenario.goal_tolerance_m, GOALS, np.random.default_rng(seed)
         )
-        self._planner = entry.build(self._problem, spec.settings)
+        self._planner = kind(self._problem, settings)
 
     def plan(self, q: FloatArray, now_s: float, observation: Observation) -> Plan:
         """Predict the obstacles and solve once from ``q`` (dof,) [rad] at ``now_s`` [s]."""
@@ -120,20 +118,17 @@ class Session:
         )
 
     def _checks(self) -> tuple[int, int]:
-        states, motions = self._problem.checker.checks, self._problem.validator.checks
-        if isinstance(self._planner, ArmPlanner):
-            return states + self._planner.state_checks, motions + self._planner.motion_checks
-        return states, motions
+        problem, planner = self._problem, self._planner
+        return problem.checker.checks + planner.state_checks, problem.validator.checks + planner.motion_checks
 
     def _path(self, definition: ob.ProblemDefinition) -> tuple[FloatArray, FloatArray]:
-        """Times (k,) and configurations (k, dof) of the solution; empty without one that a planner vouches for.
+        """Times (k,) and configurations (k, dof) of the solution; empty without one.
 
-        OMPL's trees hand out their nearest approach as an approximate solution: it leads nowhere in particular and is
-        not executed. The house's planners return approximate paths on purpose, one window at a time.
+        A path that ends short of the goal, which OMPL calls approximate, counts for every planner alike: the house's
+        return it on purpose, one window at a time, and a tree's leads where it came nearest.
         """
         dof = self._scenario.arm.dof
-        approximate_counts = isinstance(self._planner, ArmPlanner)
-        if not definition.hasSolution() or not (approximate_counts or definition.hasExactSolution()):
+        if not definition.hasSolution():
             return np.empty(0), np.empty((0, dof))
         states = [read_state(state, dof) for state in definition.getSolutionPath().getStates()]
         return np.array([t for _, t in states]), np.array([q for q, _ in states])
@@ -145,15 +140,15 @@ def _name(status: ob.PlannerStatus) -> str:
 
 
 def check_fit(specs: Sequence[PlannerSpec], arm: ContinuumArm) -> None:
-    """Refuse planners whose settings do not fit ``arm``, before anything is built or written.
+    """Refuse planners of the house whose settings do not fit ``arm``, before anything is built or written.
 
     Raises:
         ScenarioError: A lattice of configurations would be too large.
     """
     for spec in specs:
-        spacing_rad = getattr(spec.settings, "spacing_rad", None)
-        if spacing_rad is not None:
-            lattice_for(arm, spacing_rad)
+        if not is_outside(spec.name):
+            planner, settings = load(spec)
+            planner.check_fit(settings, arm)
 
 
 def warm_up(specs: Sequence[PlannerSpec], arm: ContinuumArm) -> None:
@@ -177,7 +172,7 @@ def warm_up(specs: Sequence[PlannerSpec], arm: ContinuumArm) -> None:
     observation = Observation(times, positions, np.array([0.02]))
     for spec in specs:
         for limits in (False, True):
-            session = Session(spec, scenario, predictor=PLANNERS[spec.name].predictor, limits=limits, seed=1)
+            session = Session(spec, scenario, predictor=spec.predictor, limits=limits, seed=1)
             plan = session.plan(start, 0.0, observation)
             if len(plan.times_s):
                 session.still_valid(plan.times_s, plan.configurations_rad, observation)

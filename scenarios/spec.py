@@ -1,5 +1,6 @@
 """The one notation for a thing with settings: ``name`` or ``name[key=value,...]``."""
 
+import difflib
 import re
 from collections.abc import Iterable
 from typing import TypeVar
@@ -7,7 +8,7 @@ from typing import TypeVar
 from pydantic import BaseModel, ValidationError
 
 _Settings = TypeVar("_Settings", bound=BaseModel)
-_SPEC = re.compile(r"\s*([A-Za-z0-9_.:-]+)\s*(?:\[([^\[\]]*)\])?\s*")
+_NAME = re.compile(r"[^\s\[\],=][^\[\],=]*")
 
 
 class SpecError(ValueError):
@@ -16,7 +17,14 @@ class SpecError(ValueError):
 
 def split_specs(text: str) -> list[str]:
     """Split a comma-separated list of specs; commas inside brackets belong to their spec."""
-    parts = [part.strip() for part in re.split(r",(?![^\[]*\])", text)]
+    entries, depth = [list[str]()], 0
+    for piece in re.split(r"([\[\],])", text):
+        if piece == "," and depth <= 0:
+            entries.append([])
+        else:
+            depth += {"[": 1, "]": -1}.get(piece, 0)
+            entries[-1].append(piece)
+    parts = ["".join(entry).strip() for entry in entries]
     if not all(parts):
         raise SpecError(f"found an empty entry in {text!r}, allowed a comma-separated list of name[key=value,...]")
     return parts
@@ -28,12 +36,12 @@ def parse_spec(text: str) -> tuple[str, dict[str, str]]:
     Raises:
         SpecError: The text is not of that form, or a key stands twice.
     """
-    match = _SPEC.fullmatch(text)
-    if match is None:
+    name, opened, rest = (part.strip() for part in text.partition("["))
+    inside = rest.removesuffix("]")
+    if not _NAME.fullmatch(name) or (opened and rest == inside) or "[" in inside or "]" in inside:
         raise SpecError(f"found {text!r}, allowed name or name[key=value,...]")
-    name, inside = match.group(1), match.group(2)
     settings: dict[str, str] = {}
-    for item in inside.split(",") if inside and inside.strip() else []:
+    for item in inside.split(",") if inside.strip() else []:
         key, equals, value = (part.strip() for part in item.partition("="))
         if not (key and equals and value):
             raise SpecError(f"{name}: found {item.strip()!r}, allowed key=value")
@@ -47,11 +55,13 @@ def known_name(kind: str, name: str, known: Iterable[str]) -> str:
     """Return ``name`` if it is known.
 
     Raises:
-        SpecError: It is not; the message lists the known ones.
+        SpecError: It is not; the message lists the known ones and names the nearest.
     """
     names = list(known)
     if name not in names:
-        raise SpecError(f"{kind}: found {name!r}, allowed {', '.join(names)}")
+        nearest = difflib.get_close_matches(name[:100], names, 1)
+        hint = f"; nearest: {nearest[0]}" if nearest else ""
+        raise SpecError(f"{kind}: found {name!r}, allowed {', '.join(names)}{hint}")
     return name
 
 

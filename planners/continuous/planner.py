@@ -9,7 +9,7 @@ import numpy as np
 from ompl import util as ou
 from pydantic import BaseModel, ConfigDict, Field
 
-from planners.base import ArmPlanner
+from planners.base import ReplanningPlanner
 from planners.continuous import _kernels
 from planners.continuous.workspace import Workspace, body_of
 from planners.problem import SpaceTimeProblem, TimedPath
@@ -38,8 +38,6 @@ IMMINENT_S = 5.0
 """A path that is free for longer than this is not given up for one with less margin, unless that leads to the goal."""
 FADING = 0.8
 """Its budget from one failed search to the next: the tree has tried much of what there is, and things change."""
-LARGEST_BOUND_M = 0.005
-"""Error bounds are taken for no more than this: what is less certain will have been observed again by then."""
 
 
 class SearchSettings(BaseModel):
@@ -93,12 +91,12 @@ class Found(NamedTuple):
         return tried if tried.reaches or (in_need and tried.lasts_s > self.lasts_s + IMMINENT_S) else self
 
 
-class TreePlanner(ArmPlanner):
+class TreePlanner(ReplanningPlanner):
     """One search after another, the order being for the subclass; they share arrays, random numbers and counts."""
 
-    def __init__(self, problem: SpaceTimeProblem, settings: SearchSettings, name: str) -> None:
+    def __init__(self, problem: SpaceTimeProblem, settings: SearchSettings) -> None:
         """Plan on ``problem``; random numbers derive from OMPL's seed."""
-        super().__init__(problem, name)
+        super().__init__(problem, settings)
         arm = problem.query.arm
         self._settings, self._body = settings, body_of(arm, RATE_RESERVE)
         self._workspace = Workspace.of(arm, settings.nodes)
@@ -129,9 +127,14 @@ class TreePlanner(ArmPlanner):
 class ContinuousPlanner(TreePlanner):
     """``temporal-ct``: replans from the free part of its last path; evades where no path to the goal is found."""
 
+    name = "temporal-ct"
+    settings_model = ContinuousSettings
+    summary = "space-time tree of steered runs, valid at every instant, repaired when the prediction changes"
+    source = "this suite: docs/temporal-ct.md"
+
     def __init__(self, problem: SpaceTimeProblem, settings: ContinuousSettings) -> None:
         """Plan on ``problem`` with a budget for each solve."""
-        super().__init__(problem, settings, "temporal-ct")
+        super().__init__(problem, settings)
         self._branches, self._retry_branches = settings.branches, settings.retry_branches
         self._margin = settings.margin
         self._last: Found | None = None
@@ -174,7 +177,7 @@ class ContinuousPlanner(TreePlanner):
     def _shares(self) -> tuple[float, ...]:
         """Shares of the margin to try: one where it makes no difference; the least second where none did before."""
         bounds = self.problem.query.prediction.bounds_m
-        if self._margin * min(float(bounds.max(initial=0.0)), LARGEST_BOUND_M) <= MARGIN_M:
+        if self._margin * min(float(bounds.max(initial=0.0)), self.largest_bound_m) <= MARGIN_M:
             return MARGIN_SHARES[:1]
         widest, *others, least = MARGIN_SHARES
         return (widest, least, *others) if self._failures else MARGIN_SHARES
@@ -183,7 +186,7 @@ class ContinuousPlanner(TreePlanner):
         """The predicted obstacles with one share of the margin in the next seconds and another further ahead."""
         prediction = self.problem.query.prediction
         passed = np.clip((prediction.ahead_s - NEAR_S) / (FAR_S - NEAR_S), 0.0, 1.0)
-        return prediction.world(self._margin * (near + (far - near) * passed), LARGEST_BOUND_M)
+        return prediction.world(self._margin * (near + (far - near) * passed), self.largest_bound_m)
 
     def _budget(self, now_s: float) -> int:
         """Branches of the next search: all of them at first, few while the arm is safe without a path to the goal."""
@@ -210,9 +213,18 @@ class ContinuousPlanner(TreePlanner):
 class ClairvoyantPlanner(TreePlanner):
     """``clairvoyant``: restarts a large search until one reaches the goal."""
 
+    name = "clairvoyant"
+    settings_model = ClairvoyantSettings
+    summary = "the same search with the true motion, a large budget and restarts"
+    source = "this suite: docs/temporal-ct.md"
+    commitment = "path"
+    prediction_margin = 0.0
+    largest_bound_m = math.inf
+    is_bound = True
+
     def __init__(self, problem: SpaceTimeProblem, settings: ClairvoyantSettings) -> None:
         """Plan on ``problem``, whose prediction is the truth."""
-        super().__init__(problem, settings, "clairvoyant")
+        super().__init__(problem, settings)
         self._restarts, self._branches = settings.restarts, settings.branches
 
     def search(self, q: FloatArray, now_s: float, stop: Callable[[], bool]) -> TimedPath | None:

@@ -12,10 +12,10 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from planners.base import ArmPlanner
 from planners.problem import SpaceTimeProblem, TimedPath
-from planners.search.configurations import enumerated_space
+from planners.search.configurations import enumerated_space, lattice_for
 from planners.search.cubes import LayeredGraph, ObstacleSteps
 from planners.search.cubes import _kernels as kernels
-from scenarios.arm import FloatArray
+from scenarios.arm import ContinuumArm, FloatArray
 from scenarios.scenario import STEP_S
 
 
@@ -30,9 +30,17 @@ class HeuristicSettings(BaseModel):
 class StaticPathPlanner(ArmPlanner):
     """Follows a shortest cube path one cube per step; what to do about a blocked cube is for the subclass."""
 
-    def __init__(self, problem: SpaceTimeProblem, settings: HeuristicSettings, name: str) -> None:
+    settings_model = HeuristicSettings
+    commitment = "path"
+
+    @classmethod
+    def check_fit(cls, settings: HeuristicSettings, arm: ContinuumArm) -> None:
+        """See ``ArmPlanner.check_fit``: the lattice has to be of bounded size."""
+        lattice_for(arm, settings.spacing_rad)
+
+    def __init__(self, problem: SpaceTimeProblem, settings: HeuristicSettings) -> None:
         """Plan on ``problem`` with the lattice in ``settings``."""
-        super().__init__(problem, name)
+        super().__init__(problem, settings)
         self._space = enumerated_space(problem.query.arm, settings.spacing_rad)
         self._purged = np.zeros(len(self._space.offsets) - 1, dtype=np.bool_)
         self._ahead: list[int] = []
@@ -84,9 +92,9 @@ class StaticPathPlanner(ArmPlanner):
 class PurgingPlanner(StaticPathPlanner):
     """First heuristic (paper, section IV-A): purge the blocked cube from the cubes-graph and find a new path."""
 
-    def __init__(self, problem: SpaceTimeProblem, settings: HeuristicSettings) -> None:
-        """Plan on ``problem`` with the lattice in ``settings``."""
-        super().__init__(problem, settings, "h")
+    name = "h"
+    summary = "static cube path, recomputed without the cubes found blocked"
+    source = "first heuristic: paper, section IV-A"
 
     def when_blocked(self, cube: int) -> bool:
         """Purge the cube for good."""
@@ -97,9 +105,9 @@ class PurgingPlanner(StaticPathPlanner):
 class WaitingPlanner(StaticPathPlanner):
     """Second heuristic (paper, section IV-B): wait until the obstacle has left the next cube."""
 
-    def __init__(self, problem: SpaceTimeProblem, settings: HeuristicSettings) -> None:
-        """Plan on ``problem`` with the lattice in ``settings``."""
-        super().__init__(problem, settings, "hs")
+    name = "hs"
+    summary = "static cube path, waiting while the next cube is blocked"
+    source = "second heuristic: paper, section IV-B"
 
     def when_blocked(self, cube: int) -> bool:
         """Wait."""

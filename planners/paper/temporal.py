@@ -7,10 +7,10 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from planners.base import ArmPlanner
 from planners.problem import SpaceTimeProblem, TimedPath
-from planners.search.configurations import enumerated_space
+from planners.search.configurations import enumerated_space, lattice_for
 from planners.search.cubes import LayeredGraph, ObstacleSteps, temporal_cubes_graph
 from planners.search.temporal_graph.graph import Window
-from scenarios.arm import FloatArray
+from scenarios.arm import ContinuumArm, FloatArray
 from scenarios.scenario import STEP_S
 
 
@@ -27,9 +27,25 @@ class TemporalSettings(BaseModel):
 class TemporalPlanner(ArmPlanner):
     """One round of Algorithm 2's loop per solve: lines 6 to 11; the episode repeats it from where the path ends."""
 
+    name = "temporal"
+    settings_model = TemporalSettings
+    summary = "temporal cubes-graph and layered graph of configurations"
+    source = "Meng et al., ICRA 2021, Algorithms 1 and 2"
+    commitment = "path"
+
+    @classmethod
+    def look_ahead_s(cls, settings: TemporalSettings) -> float:
+        """One step a hop."""
+        return STEP_S * settings.horizon
+
+    @classmethod
+    def check_fit(cls, settings: TemporalSettings, arm: ContinuumArm) -> None:
+        """See ``ArmPlanner.check_fit``: the lattice has to be of bounded size."""
+        lattice_for(arm, settings.spacing_rad)
+
     def __init__(self, problem: SpaceTimeProblem, settings: TemporalSettings) -> None:
         """Plan ``settings.horizon`` steps ahead on ``problem``."""
-        super().__init__(problem, "temporal")
+        super().__init__(problem, settings)
         self._settings = settings
         self._space = enumerated_space(problem.query.arm, settings.spacing_rad)
 

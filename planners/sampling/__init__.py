@@ -1,5 +1,6 @@
-"""OMPL's own planners in space-time."""
+"""OMPL's own planners."""
 
-from planners.sampling.trees import RRTSettings, TreeSettings, build_rrt, build_rrtconnect
+from planners.sampling.roadmap import PRMPlanner, PRMSettings
+from planners.sampling.trees import RRTConnectPlanner, RRTPlanner, RRTSettings, TreeSettings
 
-__all__ = ["RRTSettings", "TreeSettings", "build_rrt", "build_rrtconnect"]
+__all__ = ["PRMPlanner", "PRMSettings", "RRTConnectPlanner", "RRTPlanner", "RRTSettings", "TreeSettings"]

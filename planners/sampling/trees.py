@@ -15,7 +15,7 @@ from ompl import base as ob
 from ompl import geometric as og
 from pydantic import BaseModel, ConfigDict, Field
 
-from planners.base import ArmPlanner
+from planners.base import ReplanningPlanner
 from planners.problem import SpaceTimeProblem, TimedPath, read_state
 from planners.problem.goals import OneGoal
 from scenarios.arm import FloatArray
@@ -45,12 +45,12 @@ class RRTSettings(TreeSettings):
     goal_bias: float = Field(default=0.4, ge=0, le=1, description="share of samples drawn from the goal")
 
 
-class SpaceTimeTree(ArmPlanner):
+class SpaceTimeTree(ReplanningPlanner):
     """Lends one of OMPL's trees a goal and a part of space-time, attempt after attempt, until it has a path."""
 
-    def __init__(self, problem: SpaceTimeProblem, settings: TreeSettings, name: str, tree: ob.Planner) -> None:
+    def __init__(self, problem: SpaceTimeProblem, settings: TreeSettings, tree: ob.Planner) -> None:
         """Plan on ``problem`` with ``tree``, a planner on the same space."""
-        super().__init__(problem, name)
+        super().__init__(problem, settings)
         self._settings, self._tree = settings, tree
         tree.setRange(settings.range)
 
@@ -92,13 +92,29 @@ class SpaceTimeTree(ArmPlanner):
         return TimedPath(np.array([t for _, t in states]), np.array([configuration for configuration, _ in states]))
 
 
-def build_rrt(problem: SpaceTimeProblem, settings: RRTSettings) -> ob.Planner:
+class RRTPlanner(SpaceTimeTree):
     """OMPL's RRT (LaValle 1998)."""
-    tree = og.RRT(problem.si)
-    tree.setGoalBias(settings.goal_bias)
-    return SpaceTimeTree(problem, settings, "rrt", tree)
+
+    name = "rrt"
+    settings_model = RRTSettings
+    summary = "OMPL's RRT in space-time, replanned when the prediction invalidates the path"
+    source = "LaValle 1998"
+
+    def __init__(self, problem: SpaceTimeProblem, settings: RRTSettings) -> None:
+        """Plan on ``problem``."""
+        tree = og.RRT(problem.si)
+        tree.setGoalBias(settings.goal_bias)
+        super().__init__(problem, settings, tree)
 
 
-def build_rrtconnect(problem: SpaceTimeProblem, settings: TreeSettings) -> ob.Planner:
+class RRTConnectPlanner(SpaceTimeTree):
     """OMPL's RRT-Connect (Kuffner and LaValle 2000); its goal tree grows backward in time."""
-    return SpaceTimeTree(problem, settings, "rrtconnect", og.RRTConnect(problem.si))
+
+    name = "rrtconnect"
+    settings_model = TreeSettings
+    summary = "OMPL's RRT-Connect in space-time, replanned when the prediction invalidates the path"
+    source = "Kuffner and LaValle, ICRA 2000"
+
+    def __init__(self, problem: SpaceTimeProblem, settings: TreeSettings) -> None:
+        """Plan on ``problem``."""
+        super().__init__(problem, settings, og.RRTConnect(problem.si))

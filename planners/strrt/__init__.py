@@ -12,7 +12,7 @@ import numpy as np
 from ompl import util as ou
 from pydantic import BaseModel, ConfigDict, Field
 
-from planners.base import ArmPlanner
+from planners.base import ReplanningPlanner
 from planners.problem import SpaceTimeProblem, TimedPath
 from planners.strrt import _kernels
 from planners.strrt.region import _kernels as region
@@ -94,12 +94,17 @@ def numbers_of(arm: ContinuumArm) -> trees.Arm:
     )
 
 
-class STRRTPlanner(ArmPlanner):
+class STRRTPlanner(ReplanningPlanner):
     """``strrt``: searches anew at every solve."""
+
+    name = "strrt"
+    settings_model = STRRTSettings
+    summary = "ST-RRT* in space-time, replanned when the prediction invalidates the path"
+    source = "Grothe et al., ICRA 2022"
 
     def __init__(self, problem: SpaceTimeProblem, settings: STRRTSettings) -> None:
         """Plan on ``problem``; random numbers derive from OMPL's seed."""
-        super().__init__(problem, "strrt")
+        super().__init__(problem, settings)
         arm = problem.query.arm
         self._settings, self._arm = settings, numbers_of(arm)
         self.workspace = Workspace.of(arm.n_sections, settings.nodes)

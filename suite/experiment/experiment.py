@@ -11,7 +11,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
-from planners import PLANNERS, PREDICTORS, PlannerSpec, parse_planner
+from planners import PREDICTORS, PlannerSpec, parse_planner
 from scenarios import ContinuumArm, Scenario, generate, load_scenarios
 from scenarios.families import parse_family
 from scenarios.spec import known_name
@@ -106,7 +106,7 @@ class Experiment(BaseModel):
         specs = self.specs()
         for scenario in scenarios:
             for spec in specs:
-                predictor = PLANNERS[spec.name].predictor_for(self.predictor)
+                predictor = spec.predictor_for(self.predictor)
                 yield TrialTask(scenario, spec, predictor, self.limits, self.seed, self.noise_mm, self.dropout)
 
     @property

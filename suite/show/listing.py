@@ -18,7 +18,7 @@ def _lines() -> Iterator[str]:
     yield "Planners, as name or name[setting=value,...]:"
     for name, entry in PLANNERS.items():
         yield f"\n  {name}: {entry.summary}" + (" (sees the true future: a bound)" if entry.is_bound else "")
-        for key, field in entry.settings.model_fields.items():
+        for key, field in entry.settings_model.model_fields.items():
             kind = getattr(field.annotation, "__name__", str(field.annotation))
             default = "" if field.default is PydanticUndefined else f" = {field.default}"
             yield f"      {key}: {kind}{default}  {field.description or ''}".rstrip()

@@ -62,10 +62,10 @@ def problem_of(name: str, scenario: Scenario, now_s: float, limits: bool) -> Spa
     """The problem as the planner is given it, built anew from the registry."""
     entry, settings = PLANNERS[name], parse_planner(name).settings
     predictor = build_predictor(entry.predictor_for("cubic"), scenario)
-    prediction = predictor.predict(observe(scenario, now_s), entry.horizon_s(settings), entry.prediction_step_s)
+    prediction = predictor.predict(observe(scenario, now_s), entry.look_ahead_s(settings), entry.prediction_step_s)
     world = prediction.world(entry.prediction_margin, entry.largest_bound_m)
     query = Query(scenario.arm, scenario.goal, scenario.goal_tolerance_m, prediction, world, limits)
-    problem = SpaceTimeProblem(query, entry.horizon_s(settings))
+    problem = SpaceTimeProblem(query, entry.look_ahead_s(settings))
     problem.update(query, now_s)
     return problem
 
@@ -194,7 +194,7 @@ def test_it_changes_nothing_it_was_given(name: str, limits: bool) -> None:
 def test_it_stops_when_its_budget_is_spent(name: str, asked: int) -> None:
     scenario = CASES["moving obstacles"]
     problem = problem_of(name, scenario, 0.0, False)
-    planner = PLANNERS[name].build(problem, parse_planner(name).settings)
+    planner = PLANNERS[name](problem, parse_planner(name).settings)
     rng = np.random.default_rng(0)
     goals = GoalConfigurations(scenario.arm, scenario.goal, scenario.goal_tolerance_m, 8, rng)
     definition = problem.definition(scenario.start, 0.0, goals, rng)
@@ -215,7 +215,7 @@ def test_it_stops_when_its_budget_is_spent(name: str, asked: int) -> None:
 
 @pytest.mark.parametrize(
     ("name", "setting"),
-    [(n, s) for n in NAMES for s in ("iterations", "branches") if s in PLANNERS[n].settings.model_fields],
+    [(n, s) for n in NAMES for s in ("iterations", "branches") if s in PLANNERS[n].settings_model.model_fields],
 )
 def test_a_small_budget_is_little_work(name: str, setting: str) -> None:
     def work(text: str) -> int:
@@ -272,7 +272,7 @@ HOPELESS = {
 @with_and_without_limits
 def test_no_path_is_a_status_and_no_exception(name: str, case: str, limits: bool) -> None:
     scenario = HOPELESS[case]()
-    patient = "restarts" in PLANNERS[name].settings.model_fields
+    patient = "restarts" in PLANNERS[name].settings_model.model_fields
     session = session_of(f"{name}[restarts=1,branches=300]" if patient else name, scenario, limits)
     for now in (0.0, 1.0):
         plan = session.plan(scenario.start, now, observe(scenario, now))

@@ -15,13 +15,13 @@ def test_every_name_alone_is_a_spec(name: str) -> None:
     spec = parse_planner(name)
     assert spec.name == ALIASES.get(name, (name,))[0]
     assert spec.label == str(spec) == name
-    assert spec.settings == PLANNERS[spec.name].settings.model_validate(ALIASES.get(name, (name, {}))[1])
+    assert spec.settings == PLANNERS[spec.name].settings_model.model_validate(ALIASES.get(name, (name, {}))[1])
     assert pickle.loads(pickle.dumps(spec)) == spec
 
 
 @pytest.mark.parametrize("name", PLANNERS)
 def test_every_setting_is_described_and_its_default_allowed(name: str) -> None:
-    settings_of = PLANNERS[name].settings
+    settings_of = PLANNERS[name].settings_model
     for key, field in settings_of.model_fields.items():
         assert field.description, key
         spec = parse_planner(f"{name}[{key}={field.default}]")
@@ -93,7 +93,7 @@ def test_what_cannot_be_meant_is_one_line(text: str, parts: list[str]) -> None:
 
 names = st.sampled_from([*PLANNERS, *ALIASES, "nonsense"])
 keys = st.sampled_from(
-    sorted({key for entry in PLANNERS.values() for key in entry.settings.model_fields} | {"nonsense"})
+    sorted({key for entry in PLANNERS.values() for key in entry.settings_model.model_fields} | {"nonsense"})
 )
 values = st.one_of(st.integers().map(str), st.floats().map(str), st.text(max_size=5), st.sampled_from(["true", "1e3"]))
 likely = st.builds(

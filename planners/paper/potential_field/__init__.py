@@ -36,9 +36,14 @@ class PotentialFieldSettings(BaseModel):
 class PotentialFieldPlanner(ArmPlanner):
     """Greedy: one second along the field of the obstacles as they stand now; nothing is predicted or searched."""
 
+    name = "pf"
+    settings_model = PotentialFieldSettings
+    summary = "potential field on the arm's body"
+    source = "Godage et al., ICMA 2012; Ataka et al., ICRA 2016; paper, section IV-C"
+
     def __init__(self, problem: SpaceTimeProblem, settings: PotentialFieldSettings) -> None:
         """Follow the field with the gains in ``settings``."""
-        super().__init__(problem, "pf")
+        super().__init__(problem, settings)
         s = settings
         self._gains = (s.attraction, s.repulsion, s.influence_m, s.limit_gain, s.limit_margin_rad)
 

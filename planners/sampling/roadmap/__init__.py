@@ -16,7 +16,7 @@ from ompl import base as ob
 from ompl import geometric as og
 from pydantic import BaseModel, ConfigDict, Field
 
-from planners.base import ArmPlanner
+from planners.base import ReplanningPlanner
 from planners.problem import SpaceTimeProblem, TimedPath
 from planners.problem._kernels import least_durations
 from planners.sampling.roadmap import _kernels
@@ -38,12 +38,17 @@ class PRMSettings(BaseModel):
     horizon_s: float = Field(default=90.0, gt=0, le=3600, description="latest arrival considered, from now")
 
 
-class PRMPlanner(ArmPlanner):
+class PRMPlanner(ReplanningPlanner):
     """Earliest arrival over OMPL's roadmap, by A* with edges checked when they are first to be taken."""
+
+    name = "prm"
+    settings_model = PRMSettings
+    summary = "OMPL's roadmap, searched for the earliest arrival among the predicted obstacles"
+    source = "Kavraki et al. 1996; van den Berg et al. 2006"
 
     def __init__(self, problem: SpaceTimeProblem, settings: PRMSettings) -> None:
         """Build the roadmap of ``problem``'s arm."""
-        super().__init__(problem, "prm")
+        super().__init__(problem, settings)
         self._settings = settings
         self._milestones, self._joined = build_roadmap(problem.query.arm, settings)
         self._durations: dict[tuple[int, int], FloatArray] = {}

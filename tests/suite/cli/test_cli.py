@@ -157,7 +157,7 @@ def test_planners_lists_every_setting(capfd) -> None:
     out = capfd.readouterr().out
     for name, entry in PLANNERS.items():
         assert f"  {name}: " in out
-        for setting, field in entry.settings.model_fields.items():
+        for setting, field in entry.settings_model.model_fields.items():
             assert f"{setting}: " in out
             assert field.description, f"{name}[{setting}] says nothing"
     assert all(f"  {name}: " in out for name in PREDICTORS)
