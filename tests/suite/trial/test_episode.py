@@ -145,10 +145,12 @@ def test_planning_time_and_checks_are_sums_over_all_solves(run) -> None:
 
 
 def test_arrival_ends_a_trial_where_it_happens(run) -> None:
-    result = run(Script("path", arrive_after(6.5)))
-    assert (result.row["outcome"], result.row["arrival_time_s"]) == ("reached", 6.5)
-    assert result.times_s.tolist() == [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 6.5]
-    assert all(result.row[f"success_{verdict}"] for verdict in ("per_step", "swept", "executable"))
+    result = run(Script("path", arrive_after(2.5)))
+    assert (result.row["outcome"], result.row["arrival_time_s"]) == ("reached", 2.5)
+    assert result.times_s.tolist() == [0.0, 1.0, 2.0, 2.5]
+    assert (result.row["success_per_step"], result.row["success_swept"]) == (True, True)
+    assert result.row["violation_executable_kind"] == "tip speed"
+    assert run(Script("path", arrive_after(8.0))).row["success_executable"] is True
 
 
 def test_close_to_the_tolerance_is_not_within_it(run) -> None:
