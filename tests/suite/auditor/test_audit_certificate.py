@@ -15,9 +15,14 @@ from hypothesis import strategies as st
 from scenarios import ContinuumArm, Obstacle, Orbit, Scenario, Track, clearance, sample_world
 from suite.auditor import Kind, audit, collides
 from suite.auditor import clearance as audited_clearance
-from suite.auditor._kernels import CONTACT_M, KEPT_SHARE, kept
+from suite.auditor._kernels import CONTACT_M, kept
 
 MICROMETRE = 1e-6
+
+
+def promised(seen_m):
+    """The least that the true smallest clearance can be where the audit saw ``seen_m``, by docs/audit.md."""
+    return 0.75 * seen_m if seen_m >= 1e-4 else seen_m - max(1e-4, abs(seen_m) / 4)
 
 
 def is_free(judged):
@@ -110,7 +115,7 @@ def test_first_contact_is_a_contact_and_smallest_clearance_is_near_the_true_one(
     motion = random_motion(np.random.default_rng(seed), largest_gap_m=0.1)
     judged = audit(*motion)
     true, seen_m = clearances(motion, milliseconds(motion), 300).min(), judged.min_clearance_m
-    assert kept(seen_m) <= true + MICROMETRE
+    assert promised(seen_m) <= true + MICROMETRE
     between_two_looks_m = 0.6e-3  # of the twin, a millisecond apart
     assert true <= max(1.2 * seen_m, seen_m + 8 * MICROMETRE) + between_two_looks_m
     if is_free(judged):
@@ -120,15 +125,12 @@ def test_first_contact_is_a_contact_and_smallest_clearance_is_near_the_true_one(
         assert clearances(motion, at, 300)[0] < CONTACT_M * 1.2 + 8 * MICROMETRE
 
 
-def test_what_is_kept_grows_with_what_was_seen_and_never_falls_behind_it_by_more_than_it_says():
-    seen = np.concatenate([np.linspace(-0.1, 0.1, 2001), [CONTACT_M, np.nextafter(CONTACT_M, 0)]])
-    seen.sort()
+def test_what_is_kept_is_what_is_promised_and_grows_with_what_was_seen():
+    seen = np.sort([*np.linspace(-0.1, 0.1, 2001), CONTACT_M, np.nextafter(CONTACT_M, 0)])
     below = np.array([kept(m) for m in seen])
+    np.testing.assert_allclose(below, [promised(m) for m in seen], rtol=1e-12)
     assert (np.diff(below) >= 0).all()
     assert (below < seen).all()
-    np.testing.assert_allclose(below[seen >= CONTACT_M], KEPT_SHARE * seen[seen >= CONTACT_M])
-    depths = seen[seen < 0]
-    np.testing.assert_allclose(below[seen < 0], depths - np.maximum(CONTACT_M, -depths / 4))
 
 
 def test_after_a_graze_the_deepest_contact_is_still_found():
@@ -150,7 +152,7 @@ def test_after_a_graze_the_deepest_contact_is_still_found():
     assert judged.swept.violation_kind == Kind.COLLISION
     assert 0.45 < judged.swept.violation_time_s < 0.5
     assert judged.min_clearance_m + MICROMETRE >= -0.012
-    assert kept(judged.min_clearance_m) <= -0.012
+    assert promised(judged.min_clearance_m) <= -0.012
 
 
 def test_a_contact_at_a_whole_second_does_not_end_the_search_for_the_smallest_clearance():
@@ -163,7 +165,7 @@ def test_a_contact_at_a_whole_second_does_not_end_the_search_for_the_smallest_cl
     judged = audit(scenario, [0.0, 2.5], np.zeros((2, 2)))
     assert judged.per_step[1:] == (1.0, Kind.COLLISION)
     assert judged.min_clearance_m == pytest.approx(-0.008, abs=2e-3)
-    assert kept(judged.min_clearance_m) <= -0.008
+    assert promised(judged.min_clearance_m) <= -0.008
 
 
 @pytest.mark.parametrize(("gap_m", "collides_"), [(2e-4, False), (1.3e-4, False), (7e-5, True), (0.0, True)])
