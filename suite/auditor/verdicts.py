@@ -52,6 +52,6 @@ class Audit(NamedTuple):
     arrival_time_s: float
     """Time of the first timed state with the tip within the goal tolerance [s]; nan when there is none."""
     min_clearance_m: float
-    """Smallest clearance seen [m]; docs/audit.md says how far from the smallest there is. inf without obstacles."""
+    """Smallest clearance until ``end_time_s``, contacts included [m]; inf without obstacles (docs/audit.md)."""
     end_time_s: float
     """Where the audit ended: at arrival, at the time limit or at the last timed state that can be [s]."""
