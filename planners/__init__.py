@@ -2,7 +2,7 @@
 
 from planners.prediction import PREDICTORS, Observation, build_predictor
 from planners.registry import ALIASES, PLANNERS, PlannerEntry, PlannerSpec, is_bound, parse_planner, split_specs
-from planners.session import Plan, Session, check_fit, warm_up
+from planners.session import Plan, Session, check_fit
 
 __all__ = [
     "ALIASES",
@@ -18,5 +18,4 @@ __all__ = [
     "is_bound",
     "parse_planner",
     "split_specs",
-    "warm_up",
 ]

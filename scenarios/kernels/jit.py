@@ -80,7 +80,7 @@ def _compile(function: Callable[..., Any], **options: bool) -> Callable[..., Any
     njit: Any = numba.njit  # its types do not know ``_nrt``
     compiled = njit(cache=True, fastmath=False, error_model="numpy", **options)(function)
     compiled.compile = functools.partial(_compile_once, compiled)
-    return compiled  # type: ignore[no-any-return]
+    return compiled
 
 
 def _compile_once(dispatcher: Any, signature: tuple[Any, ...]) -> Any:

@@ -8,8 +8,7 @@ import math
 
 import numpy as np
 
-from planners.prediction._kernels import window_start
-from planners.prediction._kernels import copy_into
+from planners.prediction._kernels import copy_into, window_start
 from scenarios.kernels.jit import kernel
 
 UNKNOWN = 1e8
