@@ -7,45 +7,54 @@
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
-INSTALLED := $(VENV)/.installed
+RUNNABLE := $(VENV)/.runnable
+TESTABLE := $(VENV)/.testable
 
 .PHONY: run test mutants bench lint lock clean
 
-run: $(INSTALLED)
+run: $(RUNNABLE)
 	$(BIN)/suite run --planners temporal,rrt,pf
 
-test: $(INSTALLED)
+test: $(TESTABLE)
 	$(BIN)/python -m pytest
 
-mutants: $(INSTALLED)
+mutants: $(TESTABLE)
 	$(BIN)/python -m tests.mutants $(MUTANTS)
 
-bench: $(INSTALLED)
+bench: $(TESTABLE)
 	$(BIN)/python -m benchmarks $(BENCH)
 
-lint: $(INSTALLED)
+lint: $(TESTABLE)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
 # Made again only when what is to be installed has changed.
-$(INSTALLED): requirements.lock pyproject.toml
+PIP_INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check
+
+$(RUNNABLE): requirements.lock pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || \
 	    { echo "error: $(PYTHON) is missing or older than Python 3.11; try: make PYTHON=/path/to/a/newer/python3" >&2; exit 1; }
 	$(PYTHON) -m venv --clear $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --requirement requirements.lock
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --editable .
+	$(PIP_INSTALL) --requirement requirements.lock
+	$(PIP_INSTALL) --no-deps --editable .
 	@touch $@
 
-# Pins from pyproject.toml for every Python >= 3.11; needs uv. The second file is the first without the heavy
-# extras (report, cluster), at the same versions.
+# Linters and test tools on top.
+$(TESTABLE): requirements-dev.lock $(RUNNABLE)
+	$(PIP_INSTALL) --requirement requirements-dev.lock
+	@touch $@
+
+# Pins from pyproject.toml for every Python >= 3.11; needs uv. All files have the same versions: with every extra, with
+# what tests and linters need, and with what a run needs.
 UV_COMPILE := uv pip compile pyproject.toml --quiet --universal --python-version 3.11 --generate-hashes \
     --no-annotate --custom-compile-command "make lock" --upgrade
 
 lock:
 	$(UV_COMPILE) --all-extras --output-file requirements-all.lock
-	$(UV_COMPILE) --extra test --extra dev --constraint requirements-all.lock --output-file requirements.lock
+	$(UV_COMPILE) --extra test --extra dev --constraint requirements-all.lock --output-file requirements-dev.lock
+	$(UV_COMPILE) --constraint requirements-all.lock --output-file requirements.lock
 
 clean:
 	rm -rf $(VENV)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import io
-import multiprocessing
 import os
 import re
 import resource
@@ -153,13 +152,19 @@ def _measure(trials: int) -> None:
         with contextlib.redirect_stderr(io.StringIO()), ThreadPoolExecutor(1) as pool:
             running = pool.submit(run_experiment, experiment, Path(folder) / "run", workers=2)
             while not running.done():
-                workers = max([workers, *(_peak(child.pid) for child in multiprocessing.active_children())])
+                workers = max([workers, *map(_peak, _children())])
                 time.sleep(0.2)
             running.result()
     sys.stdout.write(f"{_peak(os.getpid())} {workers}\n")
 
 
-def _peak(process: int | None) -> float:
+def _children() -> list[int]:
+    """Processes that this one has started, on Linux."""
+    found = [file.read_text(encoding="ascii") for file in Path("/proc/self/task").glob("*/children")]
+    return [int(process) for text in found for process in text.split()]
+
+
+def _peak(process: int) -> float:
     """Peak resident memory of a process on Linux [MiB], 0 once it has gone.
 
     ``getrusage`` would not do: a new process inherits the peak of the one that started it.

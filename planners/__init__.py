@@ -6,7 +6,7 @@ from planners.isolation import describe
 from planners.prediction import PREDICTORS, Observation, build_predictor
 from planners.problem import TimedPath
 from planners.registry import ALIASES, PLANNERS, is_bound
-from planners.session import Plan, Session, check_fit, warm_up
+from planners.session import Plan, Session, check_fit
 from planners.spec import PlannerSpec, label_of, parse_planner, split_specs
 
 __all__ = [
@@ -29,5 +29,4 @@ __all__ = [
     "label_of",
     "parse_planner",
     "split_specs",
-    "warm_up",
 ]

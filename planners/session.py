@@ -151,33 +151,6 @@ def check_fit(specs: Sequence[PlannerSpec], arm: ContinuumArm) -> None:
             planner.check_fit(settings, arm)
 
 
-def warm_up(specs: Sequence[PlannerSpec], arm: ContinuumArm) -> None:
-    """Compile every kernel and build every table that ``specs`` need, so that no timed solve does.
-
-    Must run once before worker processes start: they then load both from the cache.
-    """
-    from scenarios.motion import Orbit
-
-    motion = Orbit(center_m=(0.0, 0.0, 1.0), radius_m=0.1, normal=(0.0, 0.0, 1.0), rate_rad_s=0.1, phase_rad=0.0)
-    start = np.full(arm.dof, 0.1)
-    scenario = Scenario(
-        id="warm-up",
-        arm=arm,
-        start_rad=tuple(start.tolist()),
-        goal_m=tuple(arm.tip(start + 0.3).tolist()),
-        obstacles=(Obstacle(radius_m=0.02, motion=motion),),
-    )
-    times = np.arange(-scenario.observation_s, 1.0)
-    positions = np.stack([obstacle.position(times) for obstacle in scenario.obstacles], axis=1)
-    observation = Observation(times, positions, np.array([0.02]))
-    for spec in specs:
-        for limits in (False, True):
-            session = Session(spec, scenario, predictor=spec.predictor, limits=limits, seed=1)
-            plan = session.plan(start, 0.0, observation)
-            if len(plan.times_s):
-                session.still_valid(plan.times_s, plan.configurations_rad, observation)
-
-
 def _budget(iterations: int | None) -> ob.PlannerTerminationCondition:
     """A budget counted in the planner's own questions, so that a seed gives the same path on any machine."""
     if iterations is None:

@@ -2,6 +2,8 @@
 
 A new shape is one subclass of ``Body`` and one entry in ``Shape``. Three questions are all that collision checks ask of
 it: which spheres hold it, how far it reaches along a direction, and what FCL calls it.
+
+SciPy is imported where it is used: it takes a tenth of a second, and spheres do not need it.
 """
 
 import functools
@@ -11,8 +13,6 @@ from typing import Annotated, Literal, NamedTuple
 import fcl
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, field_validator
-from scipy.spatial import ConvexHull, QhullError
-from scipy.spatial.transform import Rotation
 
 from scenarios.motion import FloatArray, Point
 
@@ -154,6 +154,8 @@ class Mesh(Body):
     @field_validator("vertices_m")
     @classmethod
     def _spans_a_volume(cls, vertices: tuple[Point, ...]) -> tuple[Point, ...]:
+        from scipy.spatial import ConvexHull, QhullError
+
         try:
             ConvexHull(vertices)
         except QhullError:
@@ -176,6 +178,8 @@ class Mesh(Body):
 
     def geometry(self) -> fcl.CollisionGeometry:
         """See ``Body``."""
+        from scipy.spatial import ConvexHull
+
         vertices = np.array(self.vertices_m)
         hull = ConvexHull(vertices)
         used, corners = np.unique(hull.simplices, return_inverse=True)
@@ -192,6 +196,8 @@ Shape = Annotated[Box | Capsule | Cylinder | Mesh, Field(discriminator="kind")]
 
 @functools.lru_cache(maxsize=1024)
 def _rotation(vector: Point) -> FloatArray:
+    from scipy.spatial.transform import Rotation
+
     return np.asarray(Rotation.from_rotvec(vector).as_matrix())
 
 

@@ -2,33 +2,60 @@
 
 from __future__ import annotations
 
+import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING, Protocol
 
-from rich.console import Console
-from rich.progress import (
-    BarColumn,
-    MofNCompleteColumn,
-    Progress,
-    TextColumn,
-    TimeElapsedColumn,
-    TimeRemainingColumn,
-)
+if TYPE_CHECKING:
+    from rich.progress import Progress, TaskID
 
 LINE_EVERY_S = 10.0
+SOON_S = 2.0
+"""A wait shorter than this is not talked about."""
+LEAST_SHARE = 0.2
+"""Parts under way that have taken long already are taken to need this share of their time still."""
 
-Advance = Callable[[str], None]
-"""Called after each finished trial with the planner's label."""
+
+class Warming(Protocol):
+    """A part of the warm-up."""
+
+    @property
+    def name(self) -> str:
+        """As shown while it is under way."""
+
+    @property
+    def typical_s(self) -> float:
+        """What it takes to compile, about [s]."""
+
+
+class Reporter(Protocol):
+    """Told how a run goes on."""
+
+    def __call__(self, label: str) -> None:
+        """A trial of this planner has finished."""
+
+    def warm_up(self, running: Collection[Warming], waiting: Collection[Warming]) -> None:
+        """These parts of the warm-up are under way, and these not yet begun; called now and then until all are done."""
 
 
 @contextmanager
-def progress(total: int) -> Iterator[Advance]:
-    """Show progress towards ``total`` trials while the block runs; until the first has finished, it warms up."""
-    console = Console(stderr=True, highlight=False)
-    if not console.is_terminal:
-        yield _Lines(console, total)
+def progress(total: int) -> Iterator[Reporter]:
+    """Show progress towards ``total`` trials while the block runs."""
+    if not sys.stderr.isatty():
+        yield _Lines(total)
         return
+    from rich.console import Console
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
+
     with Progress(
         TextColumn("{task.description}", markup=False),  # the brackets of a spec are no markup
         BarColumn(),
@@ -36,27 +63,65 @@ def progress(total: int) -> Iterator[Advance]:
         TimeElapsedColumn(),
         TextColumn("ETA"),
         TimeRemainingColumn(),
-        console=console,
+        console=Console(stderr=True, highlight=False),
         transient=True,
     ) as bar:
-        task = bar.add_task("warming up (compiles on first use)", total=total, start=False)
+        yield _Bar(bar, bar.add_task("loading", total=total, start=False))
 
-        def advance(label: str) -> None:
-            bar.start_task(task)
-            bar.update(task, advance=1, description=label)
 
-        yield advance
+class Compilation:
+    """How long the warm-up still takes, from what its parts typically take and how fast it has been going here."""
+
+    def __init__(self) -> None:
+        """Begin now."""
+        self._started_s = self._last_s = time.monotonic()
+        self._open: dict[str, float] = {}
+        self._done_s = 0.0
+
+    def sentence(self, running: Collection[Warming], waiting: Collection[Warming]) -> str:
+        """What is being compiled and for how long; empty as long as it may be a matter of loading."""
+        now_s = time.monotonic()
+        still = {part.name: part.typical_s for part in (*running, *waiting)}
+        done_s = sum(typical for name, typical in self._open.items() if name not in still)
+        self._open = still
+        if done_s > 0.0:
+            self._done_s, self._last_s = self._done_s + done_s, now_s
+        if not running or now_s - self._started_s < SOON_S:
+            return ""
+        # Elapsed per typical second of the parts that are done; at first, as fast as elsewhere.
+        pace = (self._last_s - self._started_s) / self._done_s if self._done_s else 1.0 / len(running)
+        left_s = pace * sum(still.values())
+        left_s = max(left_s - (now_s - self._last_s), LEAST_SHARE * left_s)
+        others = f" and {len(waiting)} more" if waiting else ""
+        return f"compiling, once: {', '.join(part.name for part in running)}{others}; about {left_s:.0f} s to go"
+
+
+class _Bar:
+    """Progress on a terminal."""
+
+    def __init__(self, bar: Progress, task: TaskID) -> None:
+        self._bar, self._task = bar, task
+        self._compilation = Compilation()
+
+    def __call__(self, label: str) -> None:
+        self._bar.start_task(self._task)
+        self._bar.update(self._task, advance=1, description=label)
+
+    def warm_up(self, running: Collection[Warming], waiting: Collection[Warming]) -> None:
+        if sentence := self._compilation.sentence(running, waiting):
+            self._bar.update(self._task, description=sentence)
 
 
 class _Lines:
     """Progress for log files."""
 
-    def __init__(self, console: Console, total: int) -> None:
-        self._console = console
+    def __init__(self, total: int) -> None:
         self._total = total
         self._done = 0
-        self._first_s = self._last_s = 0.0
-        console.print(f"{total} trials to run; warming up (compiles on first use)")
+        self._first_s = 0.0
+        self._last_s = time.monotonic() - LINE_EVERY_S
+        self._compilation = Compilation()
+        _say(f"{total} trials to run")
 
     def __call__(self, label: str) -> None:
         del label  # a bar has room for it
@@ -68,4 +133,15 @@ class _Lines:
             return
         self._last_s = now_s
         left_s = (now_s - self._first_s) / max(1, self._done - 1) * (self._total - self._done)
-        self._console.print(f"{self._done}/{self._total} trials, about {left_s:.0f} s to go")
+        _say(f"{self._done}/{self._total} trials, about {left_s:.0f} s to go")
+
+    def warm_up(self, running: Collection[Warming], waiting: Collection[Warming]) -> None:
+        sentence = self._compilation.sentence(running, waiting)
+        if sentence and time.monotonic() - self._last_s >= LINE_EVERY_S:
+            self._last_s = time.monotonic()
+            _say(sentence)
+
+
+def _say(line: str) -> None:
+    sys.stderr.write(line + "\n")
+    sys.stderr.flush()

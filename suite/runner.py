@@ -2,24 +2,28 @@
 
 from __future__ import annotations
 
-import os
+import importlib
+import threading
 from collections.abc import Sequence
-from functools import partial
+from contextlib import closing
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-import pandas as pd
-
-from planners import PlannerSpec, check_fit
-from suite.backends.local import Job, run_tasks
-from suite.backends.warm_up import warm_up_trials
+from planners import check_fit
+from suite.backends.job import LEAST_WARM_UP_S, Backend, Job
+from suite.backends.local import InProcess
+from suite.backends.processes import Processes
+from suite.backends.warm_up import warm_up_parts
 from suite.experiment.experiment import Experiment
 from suite.experiment.manifest import make_manifest
 from suite.progress import progress
-from suite.show.derived import write_derived
 from suite.store.journal import Journal
 from suite.store.run_folder import open_run
 from suite.trial.episode import run_trial
 from suite.trial.task import TrialTask
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 DEFAULT_HANG_LIMIT_S = 300.0
 
@@ -35,7 +39,7 @@ def run_experiment(
     experiment: Experiment,
     folder: Path,
     *,
-    workers: int,
+    workers: int | Processes,
     hang_limit_s: float = DEFAULT_HANG_LIMIT_S,
     fresh: bool = False,
 ) -> pd.DataFrame:
@@ -44,8 +48,10 @@ def run_experiment(
     Args:
         experiment: What to run.
         folder: Where the run lives; a run that was stopped there goes on.
-        workers: Number of worker processes.
-        hang_limit_s: A trial that takes longer is killed and recorded as ``planner_hung`` [s].
+        workers: Number of worker processes, or those that were started ahead; 0 runs the trials in this process, where
+            nobody can kill a planner that hangs.
+        hang_limit_s: A trial that takes longer is killed and recorded as ``planner_hung`` [s]. So is a planner's
+            warm-up, which has two minutes at the least: it may have to compile.
         fresh: Start over, whatever an earlier run has left in the folder.
 
     Returns:
@@ -62,25 +68,23 @@ def run_experiment(
         tasks = list(experiment.tasks(scenarios))
         finished = journal.finished()
         left = [task for task in tasks if task.key not in finished]
+        # Pandas takes as long to import as workers to load their kernels.
+        threading.Thread(target=importlib.import_module, args=["suite.show.derived"], daemon=True).start()
         try:
             if left:
-                _run(left, experiment.specs(), journal, workers, hang_limit_s)
+                _run(left, journal, workers, hang_limit_s)
+            from suite.show.derived import write_derived
+
             return write_derived(folder, journal, scenarios, experiment.planners)
         except KeyboardInterrupt:
             raise RunInterrupted(len(journal.finished()), len(tasks)) from None
 
 
-def _run(
-    tasks: Sequence[TrialTask], specs: Sequence[PlannerSpec], journal: Journal, workers: int, hang_limit_s: float
-) -> None:
+def _run(tasks: Sequence[TrialTask], journal: Journal, workers: int | Processes, hang_limit_s: float) -> None:
     """Run every task and store each result as it comes."""
-    examples = {task.scenario.arm: task.scenario for task in tasks}
-    prepare = partial(warm_up_trials, specs, list(examples.values()))
-    for library in ("OMP", "OPENBLAS", "MKL"):
-        # Workers inherit this; threads of theirs would fight over the cores and disturb the timings.
-        os.environ.setdefault(f"{library}_NUM_THREADS", "1")
-    with progress(len(tasks)) as advance:
-        prepare()  # compiled and enumerated here, once, so that workers only have to load it
-        for task, result in run_tasks(Job(run_trial, prepare, hang_limit_s), tasks, workers):
+    backend: Backend = InProcess() if workers == 0 else Processes(workers) if isinstance(workers, int) else workers
+    job = Job(run_trial, hang_limit_s, warm_up_parts(tasks), max(LEAST_WARM_UP_S, hang_limit_s))
+    with progress(len(tasks)) as report, closing(backend.run(job, tasks, report.warm_up)) as finished:
+        for task, result in finished:
             journal.add(task, result)
-            advance(task.spec.label)
+            report(task.spec.label)

@@ -27,7 +27,7 @@ def run_with_fakes(folder: Path, *, die_after: int | None = None, fresh: bool = 
     with (
         patch("suite.experiment.manifest.source_hash", return_value="0" * 16),  # sources may be edited while tests run
         patch.object(suite.runner, "run_trial", behave),
-        patch.object(suite.runner, "warm_up_trials", prepare_nothing),
+        patch.object(suite.runner, "warm_up_parts", prepare_nothing),
         patch.object(Journal, "add", add),
     ):
         suite.runner.run_experiment(experiment, folder, workers=2, fresh=fresh)

@@ -2,13 +2,17 @@
 
 import os
 import signal
+import sys
 import time
+from functools import partial
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from pydantic import BaseModel
 
 from scenarios import Scenario
+from suite.backends.job import Part
 from suite.trial.task import TrialResult, TrialTask, trial_row
 
 
@@ -34,14 +38,6 @@ def make_tasks(labels: list[str], trials: int = 1) -> list[TrialTask]:
     ]
 
 
-def prepare() -> None:
-    pass
-
-
-def cannot_prepare() -> None:
-    os._exit(7)
-
-
 def behave(task: TrialTask) -> TrialResult:
     """Do what the planner's label says, or reach the goal about every second time."""
     match task.spec.label:
@@ -53,6 +49,8 @@ def behave(task: TrialTask) -> TrialResult:
             os.kill(os.getpid(), signal.SIGKILL)
         case "quit":
             os._exit(0)
+        case "leave":
+            raise SystemExit(5)
     rng = np.random.default_rng(task.trial_seed)
     reached = bool(rng.random() < 0.5)
     measured = {
@@ -66,5 +64,39 @@ def behave(task: TrialTask) -> TrialResult:
     return TrialResult(trial_row(task, measured), np.arange(3.0), rng.normal(size=(3, 6)))
 
 
-def prepare_nothing(specs: object, examples: object) -> None:
-    pass
+def heavy_imports(task: TrialTask) -> TrialResult:
+    """In the message: what this process has imported without need."""
+    heavy = ("pandas", "rich", "typer", "tabulate", "scipy.stats", "scipy.interpolate", "scipy.spatial", "networkx")
+    found = ", ".join(name for name in heavy if name in sys.modules)
+    return TrialResult(trial_row(task, {"message": found}), np.empty(0), np.empty((0, 6)))
+
+
+def prepare_nothing(tasks: object) -> list[Part]:
+    return []
+
+
+def warm(how: str) -> None:
+    """Do in a warm-up what ``how`` says."""
+    match how:
+        case "raise":
+            raise ValueError("three\nlines")
+        case "leave":
+            raise SystemExit(3)
+        case "hang":
+            time.sleep(1000)
+        case "die":
+            os.kill(os.getpid(), signal.SIGKILL)
+        case "quit":
+            os._exit(7)
+
+
+def warm_after_a_death(file: str) -> None:
+    """As if somebody killed the first process that comes here."""
+    if not Path(file).exists():
+        Path(file).touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+
+
+def make_parts(hows: dict[str, str]) -> list[Part]:
+    """A part of the warm-up for each planner, by label."""
+    return [Part(label, partial(warm, how), 1.0, planner=label) for label, how in hows.items()]

@@ -25,6 +25,9 @@ class PredictorEntry(NamedTuple):
     """Sees the true future: a bound, never a method to be ranked."""
 
 
+PORTFOLIO = ("arc", "kalman", "gp")
+"""The models in the portfolio."""
+
 PREDICTORS: dict[str, PredictorEntry] = {
     "velocity": PredictorEntry("constant velocity over the last 5 observations", lambda _: VelocityPredictor()),
     "cubic": PredictorEntry("cubic spline over the last 5 observations (the paper's)", lambda _: CubicPredictor()),
@@ -50,4 +53,13 @@ def build_predictor(name: str, scenario: Scenario) -> Predictor:
     return PREDICTORS[known_name("predictor", name, PREDICTORS)].build(scenario)
 
 
-__all__ = ["PREDICTORS", "Forecast", "Observation", "Prediction", "Predictor", "PredictorEntry", "build_predictor"]
+__all__ = [
+    "PORTFOLIO",
+    "PREDICTORS",
+    "Forecast",
+    "Observation",
+    "Prediction",
+    "Predictor",
+    "PredictorEntry",
+    "build_predictor",
+]

@@ -14,6 +14,18 @@ SPURT = 2.0
 
 
 @kernel
+def copy_into(target, source):
+    """Write a matrix into another of its shape.
+
+    In loops, here as in all kernels: numba gives every ``target[:] = source`` code that would write out both shapes in
+    an error, and it takes longer to compile than most kernels.
+    """
+    for i in range(source.shape[0]):
+        for j in range(source.shape[1]):
+            target[i, j] = source[i, j]
+
+
+@kernel
 def invert(a, n):
     """Invert the symmetric positive definite ``a[:n, :n]``, of which the lower half counts, in place (Gauss-Jordan)."""
     for i in range(n):
@@ -75,11 +87,13 @@ def line_through(times, positions, first, last, now, line):
         if not math.isnan(positions[i, 0]):
             count += 1
             mean += times[i] - now
-            line[0] += positions[i]
+            for k in range(3):
+                line[0, k] += positions[i, k]
     if count == 0:
         return 0, 0.0, 0.0, 0.0
     mean /= count
-    line[0] /= count
+    for k in range(3):
+        line[0, k] /= count
     about = 0.0
     for i in range(first, last + 1):
         if not math.isnan(positions[i, 0]):
@@ -88,14 +102,16 @@ def line_through(times, positions, first, last, now, line):
             for k in range(3):
                 line[1, k] += t * (positions[i, k] - line[0, k])
     if about > 0.0:
-        line[1] /= about
+        for k in range(3):
+            line[1, k] /= about
     squares = 0.0
     for i in range(first, last + 1):
         if not math.isnan(positions[i, 0]):
             t = times[i] - now - mean
             for k in range(3):
                 squares += (positions[i, k] - line[0, k] - t * line[1, k]) ** 2
-    line[0] -= mean * line[1]
+    for k in range(3):
+        line[0, k] -= mean * line[1, k]
     return count, mean, about, squares
 
 
@@ -141,7 +157,8 @@ def follow_lines(times, positions, radii, origins, targets, ahead, window, floor
                     var[j, h] = scale / count + (t - mean) ** 2 * speed
                 elif targets[o, h] >= 0:
                     t = times[targets[o, h]] - now
-                    past[j, o, h] = line[0] + t * line[1]
+                    for k in range(3):
+                        past[j, o, h, k] = line[0, k] + t * line[1, k]
                     past_var[j, o, h] = scale / count + (t - mean) ** 2 * speed
     return past, past_var, centers, var, noise
 

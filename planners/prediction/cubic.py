@@ -3,7 +3,6 @@
 import functools
 
 import numpy as np
-from scipy.interpolate import interp1d
 
 from planners.prediction._kernels import follow_weights
 from planners.prediction.model import Extrapolation, Indices, Model
@@ -59,6 +58,8 @@ def _all_weights(times: bytes, origins: bytes, targets: bytes, ahead: bytes) -> 
 @functools.lru_cache(maxsize=1024)
 def _weights(history: bytes, ahead: bytes) -> FloatArray:
     """What each observation contributes to each prediction, (T, r): the spline is linear in the observed values."""
+    from scipy.interpolate import interp1d  # a tenth of a second, only where it is used
+
     times, wanted = np.frombuffer(history), np.frombuffer(ahead)
     if len(times) == 1:
         return np.ones((len(wanted), 1))

@@ -44,7 +44,7 @@ def tip_distance(q, section_length, point):
 
 
 @kernel
-def fastest_tip(q0, q1, section_length, enough=math.inf):
+def fastest_tip(q0, q1, section_length, enough):
     """Largest tip displacement per share of the motion q0 -> q1, linear in bending vectors [m].
 
     Past ``enough`` [m] it no longer matters by how much: the first value beyond is returned.
@@ -98,7 +98,7 @@ def within_rates(q0, q1, duration, section_length, bend_rate, tip_speed):
 @kernel
 def least_duration(q0, q1, section_length, bend_rate, tip_speed):
     """Shortest time [s] of the straight motion q0 -> q1 at the given rates."""
-    return max(largest_bend_change(q0, q1) / bend_rate, fastest_tip(q0, q1, section_length) / tip_speed)
+    return max(largest_bend_change(q0, q1) / bend_rate, fastest_tip(q0, q1, section_length, math.inf) / tip_speed)
 
 
 @kernel

@@ -3,18 +3,24 @@
 Numba's file cache looks only at the file that holds a function: an edit in a callee elsewhere leaves the caller's
 stale machine code in use. The cache folder of a kernel is therefore named by a hash of its file and of every file of
 ours that it imports, directly or not.
+
+A kernel is compiled by one process at a time: whoever needs it meanwhile waits and then loads it, so that processes
+which start with different kernels share the work.
 """
 
 import ast
+import fcntl
 import functools
 import hashlib
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
 import numba
 import platformdirs
+from numba.core.compiler_lock import global_compiler_lock
 
 _ROOT = Path(__file__).resolve().parents[2]
 
@@ -72,5 +78,41 @@ def _compile(function: Callable[..., Any], **options: bool) -> Callable[..., Any
     config: Any = numba.config
     config.CACHE_DIR = str(cache_folder() / "kernels" / source_hash(Path(function.__code__.co_filename)))
     njit: Any = numba.njit  # its types do not know ``_nrt``
-    compiled: Callable[..., Any] = njit(cache=True, fastmath=False, error_model="numpy", **options)(function)
+    compiled = njit(cache=True, fastmath=False, error_model="numpy", **options)(function)
+    compiled.compile = functools.partial(_compile_once, compiled)
     return compiled
+
+
+def _compile_once(dispatcher: Any, signature: tuple[Any, ...]) -> Any:
+    """Numba's own ``compile``, but for one process at a time, and never for the value of an argument.
+
+    A literal in a call, such as the 3 of ``invert(a, 3)``, would have the kernel compiled once more, just for it.
+    """
+    plain = tuple(numba.types.unliteral(argument) for argument in signature)
+    with global_compiler_lock, _turn(dispatcher):  # in this order in every thread
+        return type(dispatcher).compile(dispatcher, plain)
+
+
+_held: set[Path] = set()
+
+
+@contextmanager
+def _turn(dispatcher: Any) -> Iterator[None]:
+    """Wait until no other process compiles this kernel; where nothing can be written, nothing is shared either."""
+    function = dispatcher.py_func
+    file = Path(dispatcher._cache.cache_path) / f"{function.__qualname__}-{function.__code__.co_firstlineno}.lock"
+    if file in _held:
+        yield
+        return
+    handle = None
+    with suppress(OSError):
+        file.parent.mkdir(parents=True, exist_ok=True)
+        handle = os.open(file, os.O_RDWR | os.O_CREAT, 0o666)
+        fcntl.flock(handle, fcntl.LOCK_EX)  # a process that dies lets go
+    _held.add(file)
+    try:
+        yield
+    finally:
+        _held.discard(file)
+        if handle is not None:
+            os.close(handle)

@@ -127,7 +127,8 @@ def _to_chord(a, b, x, y, z):
 @kernel
 def _to_arc(start, bend, length, x, y, z, fine):
     """Distance from (x, y, z) to an arc by sub-chords, less their pad; ``fine`` (SUB_CHORDS + 1, 9) is work space."""
-    fine[0] = start
+    for k in range(9):
+        fine[0, k] = start[k]
     _roll(fine, 0, bend, length, SUB_CHORDS)
     nearest = math.inf
     for k in range(SUB_CHORDS):

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from suite.backends.processes import Processes
 from suite.cli.options import (
     EXIT_INTERRUPTED,
     Arm,
@@ -53,31 +54,33 @@ def run(
     fresh: Annotated[bool, typer.Option("--fresh", help="Start over what the folder holds.")] = False,
 ) -> None:
     """Run every planner on the same scenarios and compare them; a stopped run goes on where it was."""
-    from suite.runner import RunInterrupted, run_experiment
-    from suite.show.terminal import print_summary
-
-    fields = {
-        "planners": planners and split(planners),
-        "family": family,
-        "arm": arm,
-        "obstacles": obstacles and whole_numbers(obstacles),
-        "trials": trials,
-        "seed": seed,
-        "predictor": predictor,
-        "limits": limits,
-        "noise_mm": noise_mm,
-        "dropout": dropout,
-        "scenario_files": scenarios and tuple(str(file) for file in scenarios),
-    }
     n_workers = within("--workers", cores() if workers is None else workers, 1, 1024)
     within("--hang-limit-s", hang_limit_s, 1, 1e6)
-    experiment = experiment_of(preset, {name: value for name, value in fields.items() if value is not None})
-    folder = out or Path("results") / experiment.name
-    try:
-        summary = run_experiment(experiment, folder, workers=n_workers, hang_limit_s=hang_limit_s, fresh=fresh)
-    except RunInterrupted as stop:
-        say(f"stopped: {stop} in {folder}; the same command goes on from there")
-        raise typer.Exit(EXIT_INTERRUPTED) from None
+    with Processes(n_workers) as processes:  # the first is on its way while this process imports what follows
+        from suite.runner import RunInterrupted, run_experiment
+
+        fields = {
+            "planners": planners and split(planners),
+            "family": family,
+            "arm": arm,
+            "obstacles": obstacles and whole_numbers(obstacles),
+            "trials": trials,
+            "seed": seed,
+            "predictor": predictor,
+            "limits": limits,
+            "noise_mm": noise_mm,
+            "dropout": dropout,
+            "scenario_files": scenarios and tuple(str(file) for file in scenarios),
+        }
+        experiment = experiment_of(preset, {name: value for name, value in fields.items() if value is not None})
+        folder = out or Path("results") / experiment.name
+        try:
+            summary = run_experiment(experiment, folder, workers=processes, hang_limit_s=hang_limit_s, fresh=fresh)
+        except RunInterrupted as stop:
+            say(f"stopped: {stop} in {folder}; the same command goes on from there")
+            raise typer.Exit(EXIT_INTERRUPTED) from None
+    from suite.show.terminal import print_summary
+
     print_summary(summary)
     print()
     for name in ("table.md", "table.csv", "trials.csv"):

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from statistics import NormalDist
 from typing import NamedTuple
-
-from scipy.stats import binomtest
 
 
 class Interval(NamedTuple):
@@ -28,8 +28,10 @@ def wilson_interval(successes: int, trials: int, confidence: float = 0.95) -> In
     References:
         E. B. Wilson, J. Am. Stat. Assoc. 22 (1927), 209-212.
     """
-    interval = binomtest(successes, trials).proportion_ci(confidence, method="wilson")
-    return Interval(float(interval.low), float(interval.high))
+    rate, z = successes / trials, NormalDist().inv_cdf(0.5 + 0.5 * confidence)
+    center = (2.0 * trials * rate + z * z) / (2.0 * (trials + z * z))
+    half = z * math.sqrt(4.0 * trials * rate * (1.0 - rate) + z * z) / (2.0 * (trials + z * z))
+    return Interval(center - half if successes > 0 else 0.0, center + half if successes < trials else 1.0)
 
 
 def mcnemar_p(only_first: int, only_second: int) -> float:
@@ -42,6 +44,8 @@ def mcnemar_p(only_first: int, only_second: int) -> float:
         only_first: Scenarios on which only the first planner succeeds.
         only_second: Scenarios on which only the second one does.
     """
+    from scipy.stats import binomtest  # half a second to import, and no run's own table needs it
+
     discordant = only_first + only_second
     return float(binomtest(only_first, discordant).pvalue) if discordant else 1.0
 

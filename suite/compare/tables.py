@@ -18,7 +18,7 @@ from planners import is_bound
 from suite.auditor.verdicts import VERDICTS
 from suite.compare.statistics import wilson_interval
 
-ERRORS = ("planner_error", "planner_hung", "invalid_scenario")
+ERRORS = ("planner_error", "planner_hung", "worker_lost", "invalid_scenario")
 """Outcomes that say something about the software rather than about the method."""
 
 

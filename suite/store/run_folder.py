@@ -9,14 +9,15 @@ import sqlite3
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-
-import pandas as pd
+from typing import TYPE_CHECKING
 
 from suite.errors import SuiteError
 from suite.experiment.manifest import Manifest, differences
 from suite.files import write_text
-from suite.store.frames import read_trials_csv, trials_frame
 from suite.store.journal import Journal
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 MANIFEST = "manifest.json"
 JOURNAL = "run.db"
@@ -54,6 +55,8 @@ def read_trials(folder: Path) -> pd.DataFrame:
     Raises:
         SuiteError: There is neither, or it cannot be read.
     """
+    from suite.store.frames import read_trials_csv, trials_frame
+
     if (folder / JOURNAL).exists():
         try:
             with Journal(folder / JOURNAL) as journal:

@@ -15,7 +15,9 @@ from suite.auditor.verdicts import VERDICTS
 DType = Literal["string", "boolean", "Int64", "float64"]
 """Names of the pandas types that can hold a missing value."""
 
-OUTCOMES = ("reached", "collided", "timeout", "stuck", "planner_error", "planner_hung", "invalid_scenario")
+OUTCOMES = (
+    "reached", "collided", "timeout", "stuck", "planner_error", "planner_hung", "worker_lost", "invalid_scenario",
+)  # fmt: skip
 
 
 class Column(NamedTuple):

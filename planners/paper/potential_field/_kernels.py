@@ -37,7 +37,8 @@ def nearest_on_body(q, section_length, arcs, center, point):
         distance = math.sqrt(((candidate - center) ** 2).sum())
         if distance < best:
             best, best_length = distance, (i + angle / bend) * section_length
-            point[:] = candidate
+            for k in range(3):
+                point[k] = candidate[k]
     return best_length, best
 
 
@@ -103,7 +104,7 @@ def field_step(q, goal, centers, radii, section_length, arm_radius, max_bend, be
     # Rates last: on the way back from a target within the disc of bends every point is within it.
     turn = largest_bend_change(q, target)
     target = q + (target - q) * min(1.0, RESERVE * bend_rate * duration / max(turn, 1e-12))
-    moved = fastest_tip(q, target, section_length)
+    moved = fastest_tip(q, target, section_length, math.inf)
     return q + (target - q) * min(1.0, RESERVE * tip_speed * duration / max(moved, 1e-12))
 
 
@@ -113,9 +114,10 @@ def follow_field(
 ):
     """``field_step`` ``steps`` times over: the states passed, (steps + 1, 2n) [rad], ``q`` first."""
     out = np.empty((steps + 1, q.shape[0]))
-    out[0] = q
+    for i in range(q.shape[0]):
+        out[0, i] = q[i]
     for k in range(steps):
-        out[k + 1] = field_step(
+        following = field_step(
             out[k],
             goal,
             centers,
@@ -128,4 +130,6 @@ def follow_field(
             duration,
             gains,
         )
+        for i in range(q.shape[0]):
+            out[k + 1, i] = following[i]
     return out

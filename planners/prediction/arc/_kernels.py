@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from planners.prediction._kernels import invert, line_through, solve
+from planners.prediction._kernels import copy_into, invert, line_through, solve
 from scenarios.kernels.jit import kernel
 
 STEPS = 5
@@ -187,13 +187,17 @@ def refine(times, positions, last, epoch, floor, speed_scale, curvature_scale, s
         )
         prior = (speed / speed_scale) ** 2 + (curvature / curvature_scale) ** 2
         if step == 0 or squares + variance * prior <= kept_squares + variance * kept_prior:
-            before[:], kept_inside[:], kept_across[:] = state, inside, across
+            copy_into(before, state)
+            copy_into(kept_inside, inside)
+            copy_into(kept_across, across)
             kept_squares, kept_prior = squares, prior
             freedom = max(1.0, 3.0 * seen - 8.0)
             variance = max(squares / freedom, floor * floor)
             damping = 0.1 * damping if damping > 1e-3 else 0.0
         else:  # a step too far
-            state[:], inside[:], across[:] = before, kept_inside, kept_across
+            copy_into(state, before)
+            copy_into(inside, kept_inside)
+            copy_into(across, kept_across)
             speed, curvature = frame_of(state[1], state[2], axes)
             damping = max(10.0 * damping, 0.1)
         weigh_prior(variance, speed, curvature, speed_scale, curvature_scale, inside, across)
@@ -243,8 +247,9 @@ def start_state(times, positions, last, epoch, floor, curvature_scale, state):
     uncertain = 4.0 * variance * fit[2, 2] / (speed2 * speed2)
     keep = curvature_scale**2 / (curvature_scale**2 + uncertain)
     if keep > 0.5:
-        state[0], state[1] = c[0], c[1]
-        state[2] = 2.0 * keep * (c[2] - along * c[1]) / speed2
+        for k in range(3):
+            state[0, k], state[1, k] = c[0, k], c[1, k]
+            state[2, k] = 2.0 * keep * (c[2, k] - along * c[1, k]) / speed2
 
 
 @kernel
@@ -360,7 +365,8 @@ def follow(times, positions, radii, origins, targets, ahead, floor, speed_radii,
             add_observations(
                 times, seen, first, origins[o], epoch, state, axes, speed, curvature, sum_inside, sum_across
             )
-            inside[:], across[:] = sum_inside, sum_across
+            copy_into(inside, sum_inside)
+            copy_into(across, sum_across)
             weigh_prior(noise[j], speed, curvature, *scales, inside, across)
             solve(inside, 5, 0.0, factor, d)
             solve(across, 3, 0.0, factor, e)
@@ -372,6 +378,9 @@ def follow(times, positions, radii, origins, targets, ahead, floor, speed_radii,
             else:
                 look_ahead(times[-1] - epoch, ahead, state, inside, across, centers[j], var[j])
         scale = noise[j] * (freedom / (freedom - 2.0) if freedom > 4.0 else 2.0)  # noise known from few residuals
-        past_var[j] *= scale
-        var[j] *= scale
+        for o in range(n_past):
+            for h in range(targets.shape[1]):
+                past_var[j, o, h] *= scale
+        for h in range(ahead.shape[0]):
+            var[j, h] *= scale
     return past, past_var, centers, var, noise

@@ -50,7 +50,8 @@ def whiten(positions, whitener, ones, white, sums):
             for row in range(i, r):
                 white[k, row] += whitener[i, row] * away
     for i in range(r):
-        sums[i] = sums[i - 1] if i > 0 else np.zeros(5)
+        for s in range(5):
+            sums[i, s] = sums[i - 1, s] if i > 0 else 0.0
         sums[i, 0] += ones[i] * ones[i]
         for k in range(3):
             sums[i, 1 + k] += ones[i] * white[k, i]
@@ -66,7 +67,9 @@ def weigh(count, logs, sums, scale, weights, variances):
         squares = max(0.0, s[4] - (s[1] * s[1] + s[2] * s[2] + s[3] * s[3]) / s[0])
         variances[f] = (squares + 3.0 * PRIOR_OBSERVATIONS * scale * scale) / freedom
         weights[f] = -0.5 * freedom * math.log(variances[f]) - 3.0 * logs[f, count - 1] - 1.5 * math.log(s[0])
-    weights[:] = np.exp(weights - weights.max())
+    largest = weights.max()
+    for f in range(weights.shape[0]):
+        weights[f] = math.exp(weights[f] - largest)
     weights /= weights.sum()
     weights[weights < NEGLIGIBLE] = 0.0
     weights /= weights.sum()
@@ -183,6 +186,10 @@ def follow(positions, scales, counts, basis, floor):
                     units = basis.variances[f] if remembered else left_open(whitener, crosses, known, s[0])
                     look_ahead(*shares, whitener, crosses, units, known, seen, s, place, ahead, centers[j], var[j])
         noise[j] = max((weights * variances * basis.ratios).sum(), floor * floor)
-        past[j] += positions[r - 1, j]
-        centers[j] += positions[r - 1, j]
+        for k in range(3):
+            for o in range(past.shape[1]):
+                for h in range(past.shape[2]):
+                    past[j, o, h, k] += positions[r - 1, j, k]
+            for h in range(centers.shape[1]):
+                centers[j, h, k] += positions[r - 1, j, k]
     return past, 2.0 * past_var, centers, 2.0 * var, noise

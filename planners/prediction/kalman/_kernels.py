@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from planners.prediction._kernels import window_start
+from planners.prediction._kernels import copy_into, window_start
 from scenarios.kernels.jit import kernel
 
 UNKNOWN = 1e8
@@ -98,7 +98,7 @@ def run(times, positions, seen, first, origins, gains, logs, floor, speed, state
             evidence[o] = -1.5 * (logs[o] + counted * math.log(variances[o]))
             if count == 1:
                 variances[o] = speed * speed / UNKNOWN
-            states[o, :, :] = x
+            copy_into(states[o], x)
             o += 1
 
 

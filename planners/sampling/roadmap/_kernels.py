@@ -27,7 +27,7 @@ def edge_durations(q0, q1, section_length, bend_rate, tip_speed):
         a, b = q0 + (q1 - q0) * (k / n), q0 + (q1 - q0) * ((k + 1) / n)
         tip = 0.0
         for c in range(CHORDS):
-            chord = fastest_tip(a + (b - a) * (c / CHORDS), a + (b - a) * ((c + 1) / CHORDS), section_length)
+            chord = fastest_tip(a + (b - a) * (c / CHORDS), a + (b - a) * ((c + 1) / CHORDS), section_length, math.inf)
             tip = max(tip, chord * CHORDS / tip_speed)
         out[k] = RESERVE * max(largest_bend_change(a, b) / bend_rate, tip)
     return out

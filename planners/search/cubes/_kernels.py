@@ -117,7 +117,8 @@ def _box_by_distance(cube_now, goal_cube, horizon, side):
 def _doubled(array):
     """A copy of ``array`` with room for twice as many entries."""
     larger = np.empty(2 * array.shape[0], array.dtype)
-    larger[: array.shape[0]] = array
+    for k in range(array.shape[0]):
+        larger[k] = array[k]
     return larger
 
 
@@ -210,11 +211,10 @@ def relax_layer(cost, before, after, from_now, table, possible):
     change = np.empty((n, base + 1))
     for a in range(rows.shape[0]):
         for i in range(n):
-            if rows[a, i] == base:
-                change[i] = from_now[i]
-            else:
-                change[i, :base] = table[rows[a, i]]
-                change[i, base] = from_now[i, rows[a, i]]
+            row = rows[a, i]
+            for b in range(base):
+                change[i, b] = from_now[i, b] if row == base else table[row, b]
+            change[i, base] = from_now[i, row]
         for b in range(columns.shape[0]):
             if possible.shape[0] > 0 and not possible[a, b]:
                 continue

@@ -5,8 +5,6 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial import ConvexHull
-from scipy.spatial.transform import Rotation
 
 from scenarios import Box, Capsule, Cylinder, Mesh, Obstacle
 from suite.auditor.shapes._kernels import BOX, CAPSULE, CYLINDER, MESH, SPHERE
@@ -57,7 +55,7 @@ def pack_shapes(obstacles: Sequence[Obstacle]) -> Bodies:
     vectors = [obstacle.shape.rotation_rad if obstacle.shape else (0.0, 0.0, 0.0) for obstacle in obstacles]
     return Bodies(
         kinds=np.array(kinds, dtype=np.int64),
-        turns=Rotation.from_rotvec(np.array(vectors).reshape(-1, 3)).as_matrix(),
+        turns=_turns(np.array(vectors).reshape(-1, 3)),
         sizes_m=np.array(sizes, dtype=np.float64).reshape(-1, 3),
         planes=np.concatenate(planes),
         faces_m=np.concatenate(faces),
@@ -65,8 +63,19 @@ def pack_shapes(obstacles: Sequence[Obstacle]) -> Bodies:
     )
 
 
+def _turns(vectors: FloatArray) -> FloatArray:
+    """Rotation matrices (m, 3, 3) of rotation vectors (m, 3)."""
+    if not vectors.any():  # SciPy takes a tenth of a second to import, and spheres do not turn
+        return np.tile(np.eye(3), (len(vectors), 1, 1))
+    from scipy.spatial.transform import Rotation
+
+    return np.asarray(Rotation.from_rotvec(vectors).as_matrix())
+
+
 def _triangles(vertices: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Planes (F, 4) and corners (F, 3, 3) of the hull's triangles."""
+    from scipy.spatial import ConvexHull
+
     hull = ConvexHull(vertices)
     corners = vertices[hull.simplices]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

@@ -143,7 +143,7 @@ def test_the_fastest_tip_is_hardly_underrated(seed: int, n: int, share: float) -
     q0, q1 = random_configurations(np.random.default_rng(seed), 2, n)
     q1 = q0 + share * (q1 - q0)
     speeds = [np.linalg.norm(arm.jacobian(q0 + s * (q1 - q0)) @ (q1 - q0)) for s in np.linspace(0, 1, 400)]
-    fastest = _kernels.fastest_tip(q0, q1, arm.section_length_m)
+    fastest = _kernels.fastest_tip(q0, q1, arm.section_length_m, math.inf)
     assert fastest <= max(speeds) * (1 + 1e-4)
     assert fastest >= 0.97 * max(speeds)
 

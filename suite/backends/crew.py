@@ -1,0 +1,155 @@
+"""Workers and what they are at: a hang or a crash of a planner costs one trial, never the run.
+
+Every worker holds one piece of work at a time, so it is always known what a dead or late one had. In a pool with a
+shared queue a planner that takes its process down at once can pass for one that hangs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Sequence
+from dataclasses import replace
+from multiprocessing.connection import wait
+
+from suite.backends.agenda import Agenda
+from suite.backends.job import Failure, Job, OnWarmUp, Part
+from suite.backends.local import in_warm_up, run_task, warm_up
+from suite.backends.process import Dead, Late, WorkerProcess
+from suite.backends.worker import Unreadable
+from suite.trial.task import TrialResult, TrialTask, failed_trial
+
+STARTS = 3
+"""So many workers that die one after the other while they start cost a trial."""
+TELL_EVERY_S = 1.0
+
+
+class _Worker:
+    """A process, what it is at and what it has warmed up."""
+
+    def __init__(self, process: WorkerProcess) -> None:
+        self.process = process
+        self.part: Part | None = None
+        self.task: TrialTask | None = None
+        self.warm: set[str] = set()
+
+
+class Crew:
+    """Works off one job's tasks with a number of workers."""
+
+    def __init__(
+        self,
+        started: Sequence[WorkerProcess],
+        workers: int,
+        job: Job,
+        tasks: Sequence[TrialTask],
+        on_warm_up: OnWarmUp | None,
+    ) -> None:
+        """Begin with the processes that were ``started``."""
+        self._crew = [_Worker(process) for process in started]
+        self._n_workers = workers
+        self._job, self._bare_job = job, replace(job, parts=())
+        self._agenda = Agenda(job, tasks)
+        self._on_warm_up = on_warm_up
+        self._failed_starts = 0
+
+    def run(self) -> Generator[tuple[TrialTask, TrialResult], None, None]:
+        """Yield every task with its result as it finishes; closing the iterator early kills the workers."""
+        agenda = self._agenda
+        try:
+            while agenda.n_open:
+                self._hand_out()
+                self._tell()
+                yield from agenda.results()  # workers have gone on: the caller may take its time to store them
+                if agenda.n_open:
+                    for worker in self._due():
+                        self._settle(worker)
+            yield from agenda.results()
+        finally:
+            for worker in self._crew:
+                worker.process.kill()
+
+    def _hand_out(self) -> None:
+        """Give every worker that is at nothing something to do, and start more while there are tasks for them."""
+        for worker in self._crew:
+            if worker.process.is_asked:
+                continue
+            if worker.task is None and (part := self._agenda.next_part()):
+                self._warm_up(worker, part)
+                continue
+            worker.task = worker.task or self._agenda.next_task()
+            if worker.task is not None:
+                cold = [part for part in self._job.needed_by(worker.task) if part.name not in worker.warm]
+                if cold:
+                    self._warm_up(worker, cold[0])
+                else:
+                    worker.process.ask(run_task, self._bare_job, worker.task, limit_s=self._job.hang_limit_s)
+        while len(self._crew) < min(self._n_workers, self._agenda.n_open):
+            self._crew.append(_Worker(WorkerProcess()))
+
+    def _warm_up(self, worker: _Worker, part: Part) -> None:
+        worker.part = part
+        worker.process.ask(warm_up, part, limit_s=self._job.warm_up_limit_s)
+
+    def _tell(self) -> None:
+        if self._on_warm_up is not None:
+            self._on_warm_up(self._agenda.begun, self._agenda.not_begun)
+
+    def _due(self) -> list[_Worker]:
+        """Wait until a worker has something to say or is late; return those, none if the warm-up takes its time."""
+        patience_s = min(worker.process.patience_s for worker in self._crew)
+        if self._agenda.begun:
+            patience_s = min(patience_s, TELL_EVERY_S)
+        pipes = [worker.process.pipe for worker in self._crew]
+        talking = wait(pipes, timeout=None if patience_s == float("inf") else patience_s)
+        return [w for w in self._crew if w.process.pipe in talking or w.process.patience_s == 0.0]
+
+    def _settle(self, worker: _Worker) -> None:
+        """Take note of what a worker has done, or of what became of it."""
+        spent_s, answer = worker.process.spent_s, worker.process.answer()
+        if not worker.process.is_alive:
+            self._crew.remove(worker)
+        if worker.part is not None:
+            self._settle_part(worker, worker.part, answer)
+        elif worker.task is not None:
+            if not isinstance(answer, TrialResult):
+                answer = failed_trial(worker.task, *_failure(answer), spent_s)
+            self._agenda.finish(worker.task, answer)
+            worker.task = None
+        elif answer is None:
+            self._failed_starts = 0
+        else:  # it died or was killed while it started, or while it had nothing to do
+            self._failed_starts += 1
+            if self._failed_starts == STARTS:
+                self._failed_starts = 0
+                message = f"no worker process could start: {_failure(answer).message}"
+                self._agenda.give_up_one(Failure("worker_lost", message))
+
+    def _settle_part(self, worker: _Worker, part: Part, answer: object) -> None:
+        worker.part = None
+        if answer is None:
+            worker.warm.add(part.name)
+            self._agenda.is_warm(part)
+            return
+        failure = _failure(answer)
+        failure = failure._replace(message=f"{in_warm_up(part)}: {failure.message}")
+        if isinstance(answer, Dead):
+            self._agenda.died(part, failure)
+        else:
+            self._agenda.failed(part, failure)
+        if worker.task is not None:
+            self._agenda.put_back(worker.task)
+            worker.task = None
+
+
+def _failure(answer: object) -> Failure:
+    """What an answer that is no result means for the planner."""
+    match answer:
+        case Failure():
+            return answer
+        case Late(limit_s):
+            return Failure("planner_hung", f"killed after {limit_s:g} s")
+        case Dead(cause):
+            return Failure("planner_error", f"the process died: {cause}")
+        case Unreadable(message):
+            return Failure("planner_error", f"cannot be sent to a worker process: {message}")
+        case _:
+            return Failure("planner_error", f"found {type(answer).__name__} for a result")

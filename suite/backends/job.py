@@ -1,0 +1,71 @@
+"""What backends are given to do."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Generator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+if TYPE_CHECKING:
+    from suite.trial.task import TrialResult, TrialTask
+
+LEAST_WARM_UP_S = 120.0
+"""Compiling a part of the warm-up takes up to ten seconds of processor time; this many make it a hang anywhere."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of the warm-up: kernels to compile, or load, and tables to build before a trial may be timed."""
+
+    name: str
+    """As shown while it is under way."""
+    run: Callable[[], object]
+    """Like everything in a job importable by name, and what it carries can be pickled."""
+    typical_s: float
+    """What it takes with an empty cache, about [s]."""
+    planner: str | None = None
+    """Label of the planner whose trials alone need it and fail with it; None for what every trial needs."""
+    is_shared: bool = True
+    """Whether every process needs it before its first trial, else only the first to compile what other parts load."""
+
+
+class Failure(NamedTuple):
+    """Why trials cannot be run."""
+
+    outcome: str
+    message: str
+
+
+@dataclass(frozen=True)
+class Job:
+    """How tasks are run."""
+
+    run: Callable[[TrialTask], TrialResult]
+    """Called with each task."""
+    hang_limit_s: float
+    """A task that takes longer is killed and becomes ``planner_hung`` [s]."""
+    parts: Sequence[Part] = ()
+    """The warm-up; what takes longest and what others are built on comes first."""
+    warm_up_limit_s: float = LEAST_WARM_UP_S
+    """A part that takes longer is killed and its planner's trials become ``planner_hung`` [s]."""
+
+    def needed_by(self, task: TrialTask) -> list[Part]:
+        """What a process has to have warmed up before ``task``."""
+        mine = [part for part in self.parts if part.planner == task.spec.label]
+        return [part for part in self.parts if part.planner is None and part.is_shared] + mine
+
+
+OnWarmUp = Callable[[Collection[Part], Collection[Part]], None]
+"""Called now and then with the parts under way and those not yet begun, until all have been warmed up."""
+
+
+class Backend(Protocol):
+    """Where trials run."""
+
+    def run(
+        self, job: Job, tasks: Sequence[TrialTask], on_warm_up: OnWarmUp | None = None
+    ) -> Generator[tuple[TrialTask, TrialResult], None, None]:
+        """Run every task and yield each with its result as it finishes; closing the iterator early ends all work.
+
+        What a planner does wrong, in a trial or in its warm-up, is in the results of its tasks.
+        """
