@@ -15,7 +15,9 @@ from typer.exceptions import TyperException
 
 from suite.cli.audit import audit
 from suite.cli.check import check
+from suite.cli.check_planner import check_planner
 from suite.cli.generate import generate
+from suite.cli.new_planner import new_planner
 from suite.cli.options import EXIT_INTERRUPTED, EXIT_USAGE, say
 from suite.cli.planners import planners
 from suite.cli.predictors import predictors
@@ -28,14 +30,15 @@ app = typer.Typer(
     rich_markup_mode=None,  # rich help would double the time of --help
     pretty_exceptions_enable=False,
 )
-for verb in (run, table, generate, planners, predictors, check, audit, version):
+for verb in (run, table, generate, planners, new_planner, check_planner, predictors, check, audit, version):
     app.command()(verb)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code.
 
-    0 is done, 2 a usage or input error, 3 nothing to compare, 130 interrupted with everything finished saved.
+    0 is done, 1 a planner that failed a check, 2 a usage or input error, 3 nothing to compare, 130 interrupted with
+    everything finished saved.
     """
     signal.signal(signal.SIGTERM, _interrupt)
     given = list(sys.argv[1:] if arguments is None else arguments)
