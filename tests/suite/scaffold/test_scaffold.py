@@ -4,11 +4,10 @@ import signal
 import subprocess
 import sys
 
-import numpy as np
 import pytest
 
 from planners import PlannerSpec, parse_planner
-from planners.conformance.scenes import hopeless_scenes, observe, session_of
+from planners.conformance.scenes import observe, problem_of, scenes, session_of
 from scenarios import ContinuumArm, generate
 from suite.cli.main import main
 from suite.conformance import Check, parametrize_with_checks
@@ -44,15 +43,13 @@ def test_it_reaches_every_goal_among_no_obstacles(arm: str) -> None:
         assert row["success_executable"], scenario.id
 
 
-def test_where_no_way_is_free_it_goes_on_until_an_obstacle_is_in_the_way() -> None:
-    spec = parse_planner("suite.scaffold.new_planner:NewPlanner")
-    scenario = hopeless_scenes()["goal inside an obstacle"]
+def test_where_no_way_is_free_it_takes_what_is_free_of_one() -> None:
+    spec, scenario = parse_planner("suite.scaffold.new_planner:NewPlanner"), scenes()["moving obstacles"]
     plan = session_of(spec, scenario).plan(scenario.start, 0.0, observe(scenario))
     assert plan.status == "Approximate solution"
-    (obstacle,) = scenario.obstacles
-    center = obstacle.position(np.zeros(1))[0]
-    away = np.linalg.norm(scenario.arm.backbone_points(plan.configurations_rad[-1], 100) - center, axis=1).min()
-    assert away > obstacle.radius_m + scenario.arm.radius_m
+    check = problem_of(spec, scenario, False).validator.check
+    path, times = plan.configurations_rad, plan.times_s
+    assert all(check(path[k], times[k], path[k + 1], times[k + 1]) for k in range(len(times) - 1))
 
 
 @pytest.mark.usefixtures("_in_an_empty_folder")
