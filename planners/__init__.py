@@ -1,11 +1,13 @@
 """The methods: prediction, the OMPL space-time problem, and every planner."""
 
 from planners.base import ArmPlanner, NoSettings
+from planners.failure import Failure, failure_of
+from planners.isolation import describe
 from planners.prediction import PREDICTORS, Observation, build_predictor
 from planners.problem import TimedPath
 from planners.registry import ALIASES, PLANNERS, is_bound
 from planners.session import Plan, Session, check_fit, warm_up
-from planners.spec import Failure, PlannerSpec, parse_planner, split_specs
+from planners.spec import PlannerSpec, label_of, parse_planner, split_specs
 
 __all__ = [
     "ALIASES",
@@ -21,7 +23,10 @@ __all__ = [
     "TimedPath",
     "build_predictor",
     "check_fit",
+    "describe",
+    "failure_of",
     "is_bound",
+    "label_of",
     "parse_planner",
     "split_specs",
     "warm_up",

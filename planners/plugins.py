@@ -11,6 +11,7 @@ import functools
 import hashlib
 import importlib
 import importlib.util
+import inspect
 import sys
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
@@ -32,6 +33,22 @@ def is_reference(name: str) -> bool:
 def offered() -> dict[str, EntryPoint]:
     """Entry points that installed distributions offer, by name; nothing is loaded."""
     return {entry.name: entry for entry in sorted(entry_points(group=GROUP), key=lambda entry: entry.name)}
+
+
+HERE = "here"
+"""Place of the classes that this process has offered."""
+_OFFERED_HERE: dict[str, type[ArmPlanner]] = {}
+
+
+def offer(planner: type[ArmPlanner]) -> str:
+    """Make a class known in this process alone, as one from a notebook has to be; its reference."""
+    _OFFERED_HERE[planner.__name__] = planner
+    return f"{HERE}:{planner.__name__}"
+
+
+def is_here(name: str) -> bool:
+    """Whether a reference is to a class that this process has offered."""
+    return name.startswith(f"{HERE}:") and name.partition(":")[2] in _OFFERED_HERE
 
 
 def resolved(name: str) -> str:
@@ -60,6 +77,8 @@ def load_class(name: str) -> type[ArmPlanner]:
         SpecError: The module has no such class, or what is there is no planner.
     """
     place, _, class_name = _target(name).rpartition(":")
+    if is_here(name):
+        return _OFFERED_HERE[class_name]
     found = getattr(_module(place), class_name, None)
     if found is None:
         known = [key for key, value in vars(_module(place)).items() if _is_planner(value) and value is not ArmPlanner]
@@ -78,12 +97,23 @@ def code_hash(name: str) -> str:
     Raises:
         SpecError: There is no such module.
     """
-    place = _target(name).rpartition(":")[0]
+    place, _, class_name = _target(name).rpartition(":")
+    if is_here(name):
+        return _hash_here(_OFFERED_HERE[class_name])
     sources = _closure(Path(place)) if place.endswith(".py") else _package_sources(place)
     digest = hashlib.sha256()
     for source in sorted(sources):
         digest.update(source.name.encode() + b"\0" + source.read_bytes() + b"\0")
     return digest.hexdigest()[:16]
+
+
+def _hash_here(planner: type[ArmPlanner]) -> str:
+    """The same of a class in this process; of one whose source is nowhere, of its name alone."""
+    try:
+        source = inspect.getsource(planner)
+    except (OSError, TypeError):
+        source = planner.__qualname__
+    return hashlib.sha256(source.encode()).hexdigest()[:16]
 
 
 def _target(name: str) -> str:

@@ -14,21 +14,12 @@ from pydantic import BaseModel
 
 from planners import plugins
 from planners.base import ArmPlanner
+from planners.failure import Failure
 from planners.registry import ALIASES, PLANNERS
 from scenarios.spec import SpecError, known_name, parse_settings, parse_spec
 from scenarios.spec import split_specs as split_texts
 
 _LABEL = re.compile(r"[A-Za-z0-9_.+-]{1,40}")
-
-
-class Failure(NamedTuple):
-    """Why a planner from outside can't be had; it costs that planner's trials and no others."""
-
-    outcome: str
-    """Outcome of its trials: ``planner_error`` or ``planner_hung``."""
-    message: str
-    """One line, with file and line where there is one."""
-    traceback: str = ""
 
 
 class PlannerSpec(NamedTuple):
@@ -111,6 +102,16 @@ def parse_planner(text: str) -> PlannerSpec:
     settings = parse_settings(label.partition("[")[0], planner.settings_model, values)
     code = plugins.code_hash(name) if is_outside(name) else ""
     return PlannerSpec(label, name, settings, planner.predictor, planner.is_bound, code)
+
+
+def label_of(text: str) -> str:
+    """What tables call the planner of a spec; checked as far as it can be without importing it.
+
+    Raises:
+        SpecError: As ``parse_planner``.
+    """
+    typed = read_spec(text)
+    return typed.label if is_outside(typed.name) else parse_planner(text).label
 
 
 def load(spec: PlannerSpec) -> tuple[type[ArmPlanner], BaseModel]:

@@ -22,7 +22,7 @@ COLUMNS = {
 
 def published_file(name: str) -> Path:
     """The file behind ``--against``: ``published`` is the paper's Table I, anything else a path."""
-    return Path(__file__).parents[2] / "results" / "published_table1.csv" if name == "published" else Path(name)
+    return Path(__file__).with_name("published_table1.csv") if name == "published" else Path(name)
 
 
 def read_published(file: Path) -> pd.DataFrame:

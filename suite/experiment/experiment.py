@@ -6,12 +6,13 @@ import hashlib
 import json
 from collections import Counter
 from collections.abc import Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
-from planners import PREDICTORS, PlannerSpec, parse_planner
+from planners import PREDICTORS, PlannerSpec, describe, label_of
 from scenarios import ContinuumArm, Scenario, generate, load_scenarios
 from scenarios.families import parse_family
 from scenarios.spec import known_name
@@ -49,9 +50,9 @@ class Experiment(BaseModel):
     @field_validator("planners")
     @classmethod
     def _known_planners(cls, planners: tuple[str, ...]) -> tuple[str, ...]:
-        labels = tuple(parse_planner(text).label for text in planners)
+        labels = [label_of(text) for text in planners]
         _refuse_repeats("planners", labels)
-        return labels
+        return tuple(text.strip() if ":" in text else "".join(text.split()) for text in planners)
 
     @field_validator("family")
     @classmethod
@@ -78,7 +79,8 @@ class Experiment(BaseModel):
 
     def specs(self) -> list[PlannerSpec]:
         """The planners, in the order they were asked for."""
-        return [parse_planner(text) for text in self.planners]
+        with ThreadPoolExecutor(8) as pool:  # each planner from outside is looked at by a process of its own
+            return list(pool.map(describe, self.planners))
 
     def scenarios(self) -> list[Scenario]:
         """Load or generate the scenarios, in a fixed order.

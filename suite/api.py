@@ -1,0 +1,258 @@
+"""The Python interface: run, load, plan, judge.
+
+Everything works in a notebook, from standard input and in a script without a main guard: trials run in this process
+unless ``processes`` asks for workers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+import pandas as pd
+from tabulate import tabulate
+
+from planners import ArmPlanner, Plan, PlannerSpec, Session, parse_planner, plugins
+from scenarios import Scenario, load_scenarios
+from scenarios.spec import split_specs
+from suite.auditor import Audit
+from suite.auditor import audit as judge
+from suite.auditor.certificate import certified_contacts
+from suite.auditor.fcl_engine import sampled_contacts
+from suite.compare.tables import summarize
+from suite.errors import SuiteError
+from suite.experiment.experiment import make_experiment, preset_fields
+from suite.runner import DEFAULT_HANG_LIMIT_S, run_experiment
+from suite.show.text import cells
+from suite.store.journal import Executed, Journal
+from suite.store.run_folder import JOURNAL, planner_order, read_trials
+from suite.trial import episode
+from suite.trial.observation import Observer
+from suite.trial.task import TrialResult, TrialTask
+
+PlannerLike = str | type[ArmPlanner]
+"""A planner's spec, such as ``"t3"`` or ``"mine.py:Mine[gain=2]"``, or a class; see ``planners.ArmPlanner``."""
+
+
+class Run:
+    """What a run has left in its folder; read anew at every question, so a run that goes on can be watched."""
+
+    def __init__(self, folder: str | Path) -> None:
+        """Read ``folder``.
+
+        Raises:
+            SuiteError: There is no run in it, or it cannot be read.
+        """
+        self.folder = Path(folder)
+        self.trials  # noqa: B018  a folder without a run is refused here
+
+    @property
+    def trials(self) -> pd.DataFrame:
+        """One row per trial; ``suite.trial.columns`` declares the columns with unit and meaning."""
+        return read_trials(self.folder)
+
+    def table(self) -> pd.DataFrame:
+        """The comparison: one row per condition and planner, with 95 % Wilson intervals."""
+        return summarize(self.trials, planner_order(self.folder))
+
+    def trajectory(self, scenario: str, planner: str) -> Executed:
+        """What a planner executed in a scenario: times (k,) [s] and configurations (k, dof) [rad].
+
+        Args:
+            scenario: Its id.
+            planner: Its label, as in the table.
+
+        Raises:
+            SuiteError: There is no such trial.
+        """
+        with Journal(self.folder / JOURNAL) as journal:
+            for executed in journal.executed():
+                if (executed.scenario_id, executed.planner) == (scenario, planner):
+                    return executed
+        raise SuiteError(f"{self.folder}: found no trial of {planner!r} on {scenario!r}")
+
+    def scenario(self, scenario: str) -> Scenario:
+        """A scenario of the run by its id.
+
+        Raises:
+            SuiteError: There is none of that id.
+        """
+        file = self.folder / "scenarios.jsonl"
+        for candidate in load_scenarios(file):
+            if candidate.id == scenario:
+                return candidate
+        raise SuiteError(f"{file}: found no scenario {scenario!r}")
+
+    def __repr__(self) -> str:
+        """Where it is, and how much there is."""
+        return f"Run({str(self.folder)!r}, {len(self.trials)} trials)"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        titles, rows = cells(self.table())
+        return tabulate(rows, titles, tablefmt="html", disable_numparse=True)
+
+
+def run(
+    planners: str | type[ArmPlanner] | Iterable[PlannerLike] = (),
+    *,
+    out: str | Path | None = None,
+    preset: str | None = None,
+    processes: int = 0,
+    hang_limit_s: float = DEFAULT_HANG_LIMIT_S,
+    fresh: bool = False,
+    **conditions: Any,
+) -> Run:
+    """Run planners on the same scenarios, or what is left of such a run; as ``suite run`` does.
+
+    Args:
+        planners: Specs (``"temporal,rrt"``) and classes; may be empty where a preset names some.
+        out: Folder of the run; ``results/NAME`` when None.
+        preset: Name of a preset, or the ``manifest.json`` of a run, whose fields are taken unless given here.
+        processes: Worker processes; 0 runs every trial in this process, where a planner that hangs or crashes
+            can't be stopped.
+        hang_limit_s: In worker processes a trial that takes longer is killed [s].
+        fresh: Start over what the folder holds.
+        **conditions: Fields of ``suite.experiment.experiment.Experiment``: ``family``, ``arm``, ``obstacles``,
+            ``trials``, ``seed``, ``predictor``, ``limits``, ``noise_mm``, ``dropout``, ``scenario_files``.
+
+    Raises:
+        SuiteError, SpecError, ScenarioError: Something asked for is not allowed; one line.
+        KeyboardInterrupt: Stopped by the user; what had finished is saved, and the same call goes on.
+    """
+    texts = _texts(planners, processes)
+    given = conditions | ({"planners": texts} if texts else {})
+    experiment = make_experiment(**(preset_fields(preset) if preset else {}) | given)
+    folder = Path(out) if out is not None else Path("results") / experiment.name
+    run_experiment(experiment, folder, workers=processes, hang_limit_s=hang_limit_s, fresh=fresh)
+    return Run(folder)
+
+
+def load(folder: str | Path) -> Run:
+    """The run in ``folder``, finished or not.
+
+    Raises:
+        SuiteError: There is none, or it cannot be read.
+    """
+    return Run(folder)
+
+
+def plan(
+    scenario: Scenario,
+    planner: PlannerLike,
+    *,
+    predictor: str | None = None,
+    limits: bool = False,
+    seed: int = 0,
+    noise_mm: float = 0.0,
+    dropout: float = 0.0,
+) -> Plan:
+    """Ask a planner once, at the start of a scenario: obstacles observed up to t = 0, predicted, one solve.
+
+    Args:
+        scenario: The scenario.
+        planner: The planner.
+        predictor: Predictor of obstacle motion; the planner's own when None.
+        limits: Whether the planner has to keep to the arm's motion limits.
+        seed: Seed of the planner's randomness and of the noise.
+        noise_mm: Standard deviation of the noise on observed positions [mm].
+        dropout: Probability that an observation is lost.
+
+    Returns:
+        Status, timed path (k,) [s] and (k, dof) [rad], solve time and checks.
+
+    Raises:
+        SpecError: Unknown planner, setting or predictor.
+    """
+    task = _task(scenario, planner, predictor, limits, seed, noise_mm, dropout)
+    session = Session(task.spec, scenario, predictor=task.predictor, limits=limits, seed=task.trial_seed)
+    return session.plan(scenario.start, 0.0, Observer(task).until(0.0))
+
+
+def run_trial(
+    scenario: Scenario,
+    planner: PlannerLike,
+    *,
+    predictor: str | None = None,
+    limits: bool = False,
+    seed: int = 0,
+    noise_mm: float = 0.0,
+    dropout: float = 0.0,
+) -> TrialResult:
+    """Run a planner through a scenario in this process and judge what was executed.
+
+    Args:
+        scenario: The scenario.
+        planner: The planner; what it raises goes through.
+        predictor: Predictor of obstacle motion; the planner's own when None.
+        limits: Whether the planner has to keep to the arm's motion limits.
+        seed: Seed of the experiment, from which the trial's derives as in a run.
+        noise_mm: Standard deviation of the noise on observed positions [mm].
+        dropout: Probability that an observation is lost.
+
+    Returns:
+        The row, and what was executed: times (k,) [s] and configurations (k, dof) [rad].
+
+    Raises:
+        SpecError: Unknown planner, setting or predictor.
+    """
+    return episode.run_trial(_task(scenario, planner, predictor, limits, seed, noise_mm, dropout))
+
+
+def audit(
+    scenario: Scenario,
+    times_s: npt.ArrayLike,
+    configurations_rad: npt.ArrayLike,
+    engine: Literal["certificate", "fcl"] = "certificate",
+) -> Audit:
+    """Judge a motion from anywhere against the true motion of a scenario's obstacles.
+
+    Args:
+        scenario: The scenario.
+        times_s: Times, shape (k,), [s].
+        configurations_rad: Bending vectors (u1, v1, u2, ...), shape (k, dof), [rad]; linear between timed states.
+        engine: Conservative advancement, which certifies, or FCL sampled densely.
+
+    Returns:
+        The three verdicts, arrival and smallest clearance.
+    """
+    contacts = certified_contacts if engine == "certificate" else sampled_contacts
+    return judge(scenario, np.asarray(times_s, float), np.asarray(configurations_rad, float), contacts)
+
+
+def _task(
+    scenario: Scenario,
+    planner: PlannerLike,
+    predictor: str | None,
+    limits: bool,
+    seed: int,
+    noise_mm: float,
+    dropout: float,
+) -> TrialTask:
+    spec = _spec(planner)
+    return TrialTask(scenario, spec, spec.predictor_for(predictor), limits, seed, noise_mm, dropout)
+
+
+def _spec(planner: PlannerLike) -> PlannerSpec:
+    return parse_planner(planner if isinstance(planner, str) else plugins.offer(planner))
+
+
+def _texts(planners: str | type[ArmPlanner] | Iterable[PlannerLike], processes: int) -> tuple[str, ...]:
+    """Specs of planners given as specs and classes.
+
+    Raises:
+        SuiteError: A class is to run in other processes, which do not know it.
+    """
+    asked: Sequence[PlannerLike]
+    if isinstance(planners, str):
+        asked = split_specs(planners)
+    else:
+        asked = [planners] if isinstance(planners, type) else list(planners)
+    classes = [planner for planner in asked if not isinstance(planner, str)]
+    if classes and processes:
+        name = classes[0].__name__
+        raise SuiteError(f"planners: found the class {name}, allowed FILE.py:{name} when processes are asked for")
+    return tuple(planner if isinstance(planner, str) else plugins.offer(planner) for planner in asked)
