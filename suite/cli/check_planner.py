@@ -25,8 +25,7 @@ def check_planner(
                 print(f"{planner}: conformance {CONFORMANCE_VERSION}")
             mark = "ok   " if finding.outcome == "ok" else "FAIL "
             said = f": {finding.message}" if finding.message else ""
-            place = f" ({finding.where})" if finding.where else ""
-            print(f"  {mark} {finding.check}{said}{place}", flush=True)
+            print(f"  {mark} {finding.check}{said}", flush=True)
         findings.append(finding)
     passed = sum(finding.outcome == "ok" for finding in findings)
     if format == "json":

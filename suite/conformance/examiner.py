@@ -4,18 +4,13 @@ from __future__ import annotations
 
 import json
 import sys
-import traceback
-from pathlib import Path
 
 from planners import PlannerSpec, parse_planner, warm_up
 from planners.conformance.elsewhere import answers_alone
-from planners.spec import load, read_spec
+from planners.failure import failure_of
 from scenarios import ContinuumArm, SpecError
 from suite.conformance.checks import CHECKS, checks_for
 from suite.conformance.finding import IMPORT
-
-_HOUSE = Path(__file__).resolve().parents[2]
-LONGEST_MESSAGE = 300
 
 
 def main() -> None:
@@ -43,7 +38,7 @@ def import_planner(text: str) -> tuple[PlannerSpec | None, object]:
     except SpecError as error:
         return None, str(error)
     except BaseException as error:  # noqa: BLE001  it may raise anything
-        return None, failed(error, read_spec(text).name.rpartition(":")[0])
+        return None, failed(error)
 
 
 def attempt(name: str, planner: PlannerSpec | None) -> dict[str, str]:
@@ -53,29 +48,10 @@ def attempt(name: str, planner: PlannerSpec | None) -> dict[str, str]:
     try:
         next(check for check in CHECKS if check.__name__ == name)(planner)
     except BaseException as error:  # noqa: BLE001  a planner may raise anything; it is a finding
-        return failed(error, sys.modules[load(planner)[0].__module__].__file__ or "")
+        return failed(error)
     return {"outcome": "ok"}
 
 
-def failed(error: BaseException, own: str) -> dict[str, str]:
-    """What was raised in a line, and where: in the file ``own`` if it came through there."""
-    try:
-        said = next(iter(str(error).splitlines()), "")
-    except Exception:  # noqa: BLE001  an exception may fail to say what it is
-        said = ""
-    kind = type(error).__name__
-    message = said if isinstance(error, AssertionError) and said else f"{kind}: {said}" if said else kind
-    frames = traceback.extract_tb(error.__traceback__)
-    places = [(frame.filename, frame.lineno) for frame in frames if not frame.filename.startswith("<")]
-    if isinstance(error, SyntaxError) and error.filename:
-        places.append((error.filename, error.lineno))
-    file, line = ([place for place in places if place[0] == own] or places)[-1]
-    return {"outcome": "failed", "message": message[:LONGEST_MESSAGE], "where": f"{_short(file)}:{line}"}
-
-
-def _short(file: str) -> str:
-    """A file's path from the folder the user stands in, or within the suite."""
-    for root in (Path.cwd(), _HOUSE):
-        if Path(file).is_relative_to(root):
-            return str(Path(file).relative_to(root))
-    return file
+def failed(error: BaseException) -> dict[str, str]:
+    """What was raised and where, as the fields of a finding."""
+    return {"outcome": "failed", "message": failure_of(error).message.removeprefix("AssertionError: ")}

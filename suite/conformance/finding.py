@@ -14,6 +14,4 @@ class Finding(NamedTuple):
     check: str
     outcome: Literal["ok", "failed", "hung", "died"]
     message: str = ""
-    """One line."""
-    where: str = ""
-    """File and line: in the planner's own file if the exception came through there, else where it was raised."""
+    """One line, with file and line: of the planner's own code if it raised, else of the check."""

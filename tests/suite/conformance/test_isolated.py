@@ -12,11 +12,14 @@ from suite.conformance import CHECKS, Finding, run_checks
 
 BROKEN_FILES = {
     "raises.py": ("import numpy\n\n1 / 0\n", "ZeroDivisionError: division by zero (raises.py:3)"),
-    "syntax.py": ("x = 1\ndef\n", "SyntaxError: invalid syntax (syntax.py, line 2) (syntax.py:2)"),
+    "syntax.py": ("x = 1\ndef\n", "SyntaxError: invalid syntax (syntax.py:2)"),
     "quits.py": ("import sys\nsys.exit('bye')\n", "SystemExit: bye (quits.py:2)"),
     "dies.py": ("import os\nos._exit(7)\n", "the process died: exit code 7"),
     "hangs.py": ("while True:\n    pass\n", "killed after 3 s"),
-    "mute.py": ("class E(Exception):\n    def __str__(self):\n        raise E\n\nraise E\n", "E (mute.py:5)"),
+    "mute.py": (
+        "class E(Exception):\n    def __str__(self):\n        raise E\n\nraise E\n",
+        "E: <exception str() failed> (mute.py:5)",
+    ),
 }
 
 
@@ -34,7 +37,10 @@ def test_a_planner_that_cannot_be_imported_is_one_line(file: str, tmp_path, capf
     (tmp_path / file).write_text(text)
     assert main(["check-planner", f"{file}:Mine", "--hang-limit-s", "3"]) == 1
     out, err = capfd.readouterr()
-    assert out.splitlines() == [f"{file}:Mine: conformance 1", f"  FAIL  import: {line}", "0 of 1 passed"]
+    first, found, last = out.splitlines()
+    assert (first, last) == (f"{file}:Mine: conformance 1", "0 of 1 passed")
+    assert found.startswith("  FAIL  import: ")
+    assert found.endswith(line)
     assert "Traceback" not in err
 
 
@@ -89,8 +95,7 @@ def test_findings_as_json_whatever_the_planner_prints(tmp_path, capfd) -> None:
     assert {
         "check": "check_no_path_is_a_status",
         "outcome": "failed",
-        "message": "ValueError: no goal",
-        "where": "mine.py:7",
+        "message": "ValueError: no goal anywhere (mine.py:7)",
     } in report["checks"]
 
 
