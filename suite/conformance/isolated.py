@@ -65,11 +65,11 @@ class _Examiner:
             answer = self._exchange(IMPORT, self._limit_s)
         if isinstance(answer, str):
             raise SpecError(answer)
-        return answer if isinstance(answer, list) else self._finding(IMPORT, answer)
+        return answer if isinstance(answer, list) else Finding(IMPORT, **answer)
 
     def ask(self, name: str) -> Finding:
         """What came of the check called ``name``."""
-        return self._finding(name, self._exchange(name, self._limit_s))
+        return Finding(name, **self._exchange(name, self._limit_s))
 
     def kill(self) -> None:
         """End the process and what it has started."""
@@ -99,7 +99,3 @@ class _Examiner:
             self.kill()
             cause = f"exit code {code}" if code is None or code >= 0 else signal.Signals(-code).name
             return {"outcome": "died", "message": f"the process died: {cause}"}
-
-    @staticmethod
-    def _finding(name: str, answer: dict[str, Any]) -> Finding:
-        return Finding(name, **answer)
