@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Literal
 from ompl import base as ob
 from pydantic import BaseModel, ConfigDict
 
-from planners.problem import SpaceTimeProblem, TimedPath, read_state, write_path
+from planners.problem import SpaceTimeProblem, TimedPath, TipGoal, read_state, write_path
 from planners.search.cubes import EdgeFilter
 from scenarios.arm import ContinuumArm, FloatArray
 from scenarios.scenario import STEP_S
@@ -52,6 +52,8 @@ class ArmPlanner(ob.Planner):
     """The predictor it works with unless a run asks for another."""
     is_bound: ClassVar[bool] = False
     """Sees the true future: shows what is possible and is never ranked."""
+    is_reactive: ClassVar[bool] = False
+    """Goes by where obstacles are now: among moving ones its paths need not be free of what is predicted."""
 
     settings: Any
     """What it was asked for with, an instance of ``settings_model``."""
@@ -65,6 +67,12 @@ class ArmPlanner(ob.Planner):
         """Configurations checked by this planner's own kernels, beside those the shared checker counts."""
         self.motion_checks = 0
         """Motions checked by this planner's own kernels, beside those the shared validator counts."""
+
+    @property
+    def goal(self) -> TipGoal:
+        """The goal of this solve: known goal configurations, how early each can be reached, and the trial's ``rng``."""
+        goal: TipGoal = self.getProblemDefinition().getGoal()
+        return goal
 
     @classmethod
     def known_as(cls) -> str:

@@ -32,6 +32,7 @@ class StaticPathPlanner(ArmPlanner):
 
     settings_model = HeuristicSettings
     commitment = "path"
+    is_reactive = True
 
     @classmethod
     def check_fit(cls, settings: HeuristicSettings, arm: ContinuumArm) -> None:

@@ -56,8 +56,7 @@ class SpaceTimeTree(ReplanningPlanner):
 
     def search(self, q: FloatArray, now_s: float, stop: Callable[[], bool]) -> TimedPath | None:
         """The first path to the goal; else the one that leads nearest to it."""
-        goal = self.getProblemDefinition().getGoal()
-        configurations, earliest_s = goal.reachable
+        configurations, earliest_s = self.goal.reachable
         self._tree.clear()
         nearest, path = math.inf, None
         for k in itertools.cycle(np.argsort(earliest_s)[: self._settings.goals]):
@@ -80,8 +79,7 @@ class SpaceTimeTree(ReplanningPlanner):
         reach, detour = problem.query.arm.max_bend_rad, settings.detour_rad
         low, high = np.minimum(q, goal) - detour, np.maximum(q, goal) + detour
         problem.confine(np.maximum(low, -reach), np.minimum(high, reach), now_s, latest_s)
-        rng = self.getProblemDefinition().getGoal().rng
-        definition = problem.definition(q, now_s, OneGoal(goal), rng, latest_s)
+        definition = problem.definition(q, now_s, OneGoal(goal), self.goal.rng, latest_s)
         self._tree.setProblemDefinition(definition)
         self._tree.setup()
         left = iter(range(settings.attempt))

@@ -113,7 +113,7 @@ class STRRTPlanner(ReplanningPlanner):
 
     def search(self, q: FloatArray, now_s: float, stop: Callable[[], bool]) -> TimedPath | None:
         """The path that arrives first; without one, the one that stays free longest."""
-        configurations = self.getProblemDefinition().getGoal().configurations
+        configurations = self.goal.configurations
         if len(configurations) == 0:
             return None
         settings, space = self._settings, self.workspace

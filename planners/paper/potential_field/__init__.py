@@ -40,6 +40,7 @@ class PotentialFieldPlanner(ArmPlanner):
     settings_model = PotentialFieldSettings
     summary = "potential field on the arm's body"
     source = "Godage et al., ICMA 2012; Ataka et al., ICRA 2016; paper, section IV-C"
+    is_reactive = True
 
     def __init__(self, problem: SpaceTimeProblem, settings: PotentialFieldSettings) -> None:
         """Follow the field with the gains in ``settings``."""

@@ -55,7 +55,7 @@ class PRMPlanner(ReplanningPlanner):
 
     def search(self, q: FloatArray, now_s: float, stop: Callable[[], bool]) -> TimedPath | None:
         """The path that arrives first, among those that the budget lets it see."""
-        goals, earliest_s = self.getProblemDefinition().getGoal().reachable
+        goals, earliest_s = self.goal.reachable
         goals = goals[np.argsort(earliest_s)[: self._settings.goals]]
         start = len(self._milestones)
         self._states = np.vstack([self._milestones, q[None], goals])

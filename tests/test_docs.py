@@ -1,0 +1,83 @@
+"""Pages whose code is run: every block, in the order in which it stands there."""
+
+import os
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from planners import ArmPlanner
+from planners.plugins import GROUP
+
+ROOT = Path(__file__).resolve().parents[1]
+PAGE = (ROOT / "docs" / "adding-a-planner.md").read_text(encoding="utf-8")
+
+
+class Block(NamedTuple):
+    language: str
+    code: str
+
+
+BLOCKS = [Block(*found) for found in re.findall(r"^```(\w*)\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory) -> Path:
+    """A user's folder, with ``suite`` and ``python`` on the path."""
+    folder = tmp_path_factory.mktemp("reader")
+    (folder / "bin").mkdir()
+    for name, command in (("suite", f"{sys.executable} -P -m suite"), ("python", sys.executable)):
+        (folder / "bin" / name).write_text(f'#!/bin/sh\nexec {command} "$@"\n')
+        (folder / "bin" / name).chmod(0o755)
+    (folder / "work").mkdir()
+    return folder
+
+
+def run(folder: Path, *command: str, path: Path = ROOT) -> str:
+    places = {"PATH": f"{folder / 'bin'}:{os.environ['PATH']}", "PYTHONPATH": f"{ROOT}:{path}"}
+    done = subprocess.run(
+        command, cwd=folder / "work", env=os.environ | places, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+def test_the_page_has_blocks_of_known_languages_only() -> None:
+    assert {block.language for block in BLOCKS} == {"sh", "python", "toml"}
+    assert PAGE.count("```") == 2 * len(BLOCKS)
+
+
+@pytest.mark.parametrize("block", BLOCKS, ids=lambda block: f"{block.language}: {block.code.splitlines()[0][:40]}")
+def test_every_block_does_what_it_says(block: Block, folder: Path) -> None:
+    if block.language == "sh":
+        assert run(folder, "bash", "-ec", block.code.replace("--trials 200", "--trials 4"))
+    elif block.language == "python":
+        run(folder, "python", "-c", block.code)
+    else:
+        (points,) = tomllib.loads(block.code)["project"]["entry-points"].items()
+        assert points[0] == GROUP
+        metadata = folder / "site" / "mine-1.dist-info"
+        metadata.mkdir(parents=True)
+        (metadata / "METADATA").write_text("Metadata-Version: 2.1\nName: mine\nVersion: 1\n")
+        lines = [f"[{GROUP}]", *(f"{name} = {value}" for name, value in points[1].items())]
+        (metadata / "entry_points.txt").write_text("\n".join(lines))
+        code = "from planners.spec import load, parse_planner; print(load(parse_planner('mine'))[0].__name__)"
+        assert run(folder, "python", "-c", code, path=folder / "site") == "Mine\n"
+
+
+def test_every_trial_among_no_obstacles_arrived(folder: Path) -> None:
+    for name in ("mine-3", "mine-2"):
+        rows = (folder / "work" / "results" / name / "table.csv").read_text().splitlines()
+        row = dict(zip(rows[0].split(","), rows[1].split(","), strict=True))
+        assert (row["planner"], row["trials"]) == ("Mine", "4")
+        assert float(row["success_executable_percent"]) == 100.0
+
+
+def test_the_page_knows_every_class_attribute() -> None:
+    declared = {name for name, kind in ArmPlanner.__annotations__.items() if "ClassVar" in str(kind)}
+    table = PAGE.partition("## What does the suite want to know of it?")[2].partition("\n## ")[0]
+    assert set(re.findall(r"^\| `(\w+)` \|", table, re.MULTILINE)) == declared
