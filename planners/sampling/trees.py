@@ -36,12 +36,16 @@ class AttemptSettings(BaseModel):
     horizon_s: float = Field(default=90.0, gt=0, le=3600, description="latest arrival considered, from now")
 
 
-class TreeSettings(AttemptSettings):
-    """Settings that all trees share."""
+class RangeSettings(BaseModel):
+    """How far a tree grows at a time."""
 
     range: float = Field(
         default=1000.0, gt=0, le=1000, description="longest motion added to a tree, in space-time units"
     )
+
+
+class TreeSettings(AttemptSettings, RangeSettings):
+    """Settings that all trees share."""
 
 
 class RRTSettings(TreeSettings):

@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 from ompl import base as ob
 
-from planners import PLANNERS, Observation, Plan, Session, build_predictor, parse_planner
+from planners import PLANNERS, Observation, Plan, Session, build_predictor, ompl_planners, parse_planner
 from planners.problem import Query, SpaceTimeProblem
 from planners.problem.goals import GoalConfigurations
 from scenarios import ContinuumArm, Obstacle, Scenario, Track, generate
 
-NAMES = list(PLANNERS)
+CLASSES = {**PLANNERS, **ompl_planners()}
+NAMES = list(CLASSES)
 REACTIVE = {"h", "hs", "pf"}
 """These look at obstacles as they are now, so only among resting ones do they owe a valid path."""
 STATUSES = {
@@ -60,7 +61,7 @@ def session_of(name: str, scenario: Scenario, limits: bool = False, seed: int = 
 
 def problem_of(name: str, scenario: Scenario, now_s: float, limits: bool) -> SpaceTimeProblem:
     """The problem as the planner is given it, built anew from the registry."""
-    entry, settings = PLANNERS[name], parse_planner(name).settings
+    entry, settings = CLASSES[name], parse_planner(name).settings
     predictor = build_predictor(entry.predictor_for("cubic"), scenario)
     prediction = predictor.predict(observe(scenario, now_s), entry.look_ahead_s(settings), entry.prediction_step_s)
     world = prediction.world(entry.prediction_margin, entry.largest_bound_m)
@@ -194,7 +195,7 @@ def test_it_changes_nothing_it_was_given(name: str, limits: bool) -> None:
 def test_it_stops_when_its_budget_is_spent(name: str, asked: int) -> None:
     scenario = CASES["moving obstacles"]
     problem = problem_of(name, scenario, 0.0, False)
-    planner = PLANNERS[name](problem, parse_planner(name).settings)
+    planner = CLASSES[name](problem, parse_planner(name).settings)
     rng = np.random.default_rng(0)
     goals = GoalConfigurations(scenario.arm, scenario.goal, scenario.goal_tolerance_m, 8, rng)
     definition = problem.definition(scenario.start, 0.0, goals, rng)
@@ -215,7 +216,7 @@ def test_it_stops_when_its_budget_is_spent(name: str, asked: int) -> None:
 
 @pytest.mark.parametrize(
     ("name", "setting"),
-    [(n, s) for n in NAMES for s in ("iterations", "branches") if s in PLANNERS[n].settings_model.model_fields],
+    [(n, s) for n in NAMES for s in ("iterations", "branches") if s in CLASSES[n].settings_model.model_fields],
 )
 def test_a_small_budget_is_little_work(name: str, setting: str) -> None:
     def work(text: str) -> int:
@@ -272,7 +273,7 @@ HOPELESS = {
 @with_and_without_limits
 def test_no_path_is_a_status_and_no_exception(name: str, case: str, limits: bool) -> None:
     scenario = HOPELESS[case]()
-    patient = "restarts" in PLANNERS[name].settings_model.model_fields
+    patient = "restarts" in CLASSES[name].settings_model.model_fields
     session = session_of(f"{name}[restarts=1,branches=300]" if patient else name, scenario, limits)
     for now in (0.0, 1.0):
         plan = session.plan(scenario.start, now, observe(scenario, now))
@@ -281,7 +282,7 @@ def test_no_path_is_a_status_and_no_exception(name: str, case: str, limits: bool
         assert plan.solve_time_s >= 0
 
 
-@pytest.mark.parametrize("name", [name for name in NAMES if not PLANNERS[name].is_bound])
+@pytest.mark.parametrize("name", [name for name in NAMES if not CLASSES[name].is_bound])
 def test_after_a_hopeless_solve_it_plans_again(name: str) -> None:
     scenario = swallowed()
     session = session_of(name, scenario)

@@ -8,6 +8,7 @@ that can't work here, were found by trying them.
 import copy
 import difflib
 import functools
+import types
 from importlib.metadata import version
 from typing import Any
 
@@ -16,7 +17,7 @@ from pydantic.fields import FieldInfo
 
 from planners.sampling.by_name.guest import GuestPlanner, GuestSettings, ProjectedSettings
 from planners.sampling.by_name.setters import Setter, bound_planners, setters_of
-from planners.sampling.by_name.treatment import OMITTED, REFUSED, TREATMENTS, Treatment
+from planners.sampling.by_name.treatment import LEAST, OMITTED, REFUSED, TREATMENTS, Treatment
 from scenarios.spec import SpecError
 
 PREFIX = "ompl."
@@ -30,12 +31,12 @@ def is_guest(name: str) -> bool:
     return name.startswith(PREFIX)
 
 
-def guests() -> dict[str, type[GuestPlanner]]:
+def ompl_planners() -> dict[str, type[GuestPlanner]]:
     """Every planner of OMPL's that works here, by its name in specs."""
     return {PREFIX + name: guest_planner(PREFIX + name) for name in bound_planners() if name not in REFUSED}
 
 
-def refused() -> dict[str, str]:
+def ompl_refused() -> dict[str, str]:
     """Why the others that the installed OMPL binds can't work here, by their names in specs."""
     return {PREFIX + name: reason for name, reason in REFUSED.items() if name in bound_planners()}
 
@@ -63,7 +64,7 @@ def known_guest(name: str) -> str:
 def guest_planner(name: str) -> type[GuestPlanner]:
     """The class of a planner of OMPL's, by its name in specs."""
     short = name.removeprefix(PREFIX)
-    attributes = {
+    attributes: dict[str, Any] = {
         "__doc__": f"OMPL's {short}.",
         "__module__": __name__,
         "name": name,
@@ -72,7 +73,9 @@ def guest_planner(name: str) -> type[GuestPlanner]:
         "summary": f"OMPL's {short} in space-time, replanned when the prediction invalidates the path",
         "source": TREATMENTS.get(short, Treatment()).source or f"OMPL {version('ompl')}",
     }
-    made: type[GuestPlanner] = type(GuestPlanner)(f"{short}Planner", (GuestPlanner,), attributes)
+    made: type[GuestPlanner] = types.new_class(
+        f"{short}Planner", (GuestPlanner,), exec_body=lambda body: body.update(attributes)
+    )
     return made
 
 
@@ -90,7 +93,8 @@ def settings_model(short: str) -> type[GuestSettings]:
         shared = copy.copy(base.model_fields[key])
         shared.default = default
         fields[key] = (shared.annotation, shared)
-    model = create_model(f"{short}Settings", __base__=base, __module__=__name__, **fields)
+    create: Any = create_model  # pydantic's mypy plugin would take the result for a class statement
+    model: type[GuestSettings] = create(f"{short}Settings", __base__=base, __module__=__name__, **fields)
     model.guest = short
     model.__doc__ = f"Settings of ``{PREFIX}{short}``."
     return model
@@ -99,12 +103,10 @@ def settings_model(short: str) -> type[GuestSettings]:
 def _field(setter: Setter, default: Any) -> FieldInfo:
     """Limits that keep a search bounded; for the rest OMPL is asked."""
     limits: dict[str, Any] = {}
-    if setter.key == "range":
-        limits = {"ge": 0.01, "le": 1000}
-    elif setter.kind is int:
+    if setter.kind is int:
         limits = {"ge": 1, "le": 10_000}
     elif setter.kind is float:
-        limits = {"ge": 0, "le": 1 if setter.key.endswith(_SHARES) else 1000}
+        limits = {"ge": LEAST.get(setter.key, 0.0), "le": 1 if setter.key.endswith(_SHARES) else 1000}
     made: FieldInfo = Field(default=default, description=f"OMPL's set{setter.name}", **limits)
     return made
 

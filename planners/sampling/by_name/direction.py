@@ -1,9 +1,9 @@
 """Time has a direction, which most of OMPL's planners do not know.
 
 A motion leads forward in time. A planner that grows a second tree from the goal and checks every motion outward from
-its root would grow that tree into the goal's future; and one that samples near a state draws nearly always what can't be
-reached from there in time. So a validator that knows the states of the goal's tree turns that tree's motions round, and
-a sampler draws times that the arm's rates allow, after a state of the start's tree and before one of the goal's.
+its root would grow that tree into the goal's future; and one that samples near a state nearly always draws what can't
+be reached from there in time. So a validator that knows the states of the goal's tree turns that tree's motions round,
+and a sampler draws times that the arm's rates allow, after a state of the start's tree and before one of the goal's.
 """
 
 from dataclasses import dataclass, field
@@ -15,6 +15,9 @@ from planners.problem import SpaceTimeChecker, SpaceTimeMotionValidator, read_st
 from planners.problem._kernels import least_duration
 from scenarios.arm import ContinuumArm, FloatArray
 
+LEISURE = 1.02
+"""Motions take so much longer than the least: the shared validator measures the tip's speed on pieces over which it
+varies by 2 %, so a motion as fast as it allows may be too fast at an instant."""
 EARLY = 3
 """Times are drawn early in what the rates leave of an attempt: its share is a uniform number to this power."""
 
@@ -88,7 +91,9 @@ class DirectedSampler(ob.ValidStateSampler):
         drawn = part.rng.uniform(np.maximum(part.low, q - distance), np.minimum(part.high, q + distance))
         backward = part.is_of_goal(near)
         start, end = (drawn, q) if backward else (q, drawn)
-        needed_s = least_duration(start, end, arm.section_length_m, arm.max_bend_rate_rad_s, arm.max_tip_speed_m_s)
+        needed_s = LEISURE * least_duration(
+            start, end, arm.section_length_m, arm.max_bend_rate_rad_s, arm.max_tip_speed_m_s
+        )
         left_s = (time_s - part.from_s if backward else part.until_s - time_s) - needed_s
         if left_s <= 0.0:
             return False

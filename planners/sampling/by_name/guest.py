@@ -8,8 +8,9 @@ from ompl import base as ob
 from pydantic import Field, model_validator
 
 from planners.problem import SpaceTimeProblem, TimedPath
+from planners.problem.goals import OneGoal
 from planners.sampling.by_name.arrivals import Arrivals, free_times
-from planners.sampling.by_name.direction import DirectedSampler, DirectedValidator, Part
+from planners.sampling.by_name.direction import LEISURE, DirectedSampler, DirectedValidator, Part
 from planners.sampling.by_name.duration import Duration
 from planners.sampling.by_name.projection import TipProjection
 from planners.sampling.by_name.setters import bound_planners, fresh_planner, setters_of
@@ -24,7 +25,7 @@ class GuestSettings(AttemptSettings):
     guest: ClassVar[str] = ""
     """Name of the planner's class in OMPL."""
 
-    arrivals: int = Field(default=10, ge=1, le=1000, description="times at which a goal configuration is offered")
+    arrivals: int = Field(default=10, ge=1, le=100, description="times at which a goal configuration is offered")
 
     @model_validator(mode="after")
     def _ask_ompl(self) -> Self:
@@ -100,10 +101,11 @@ class GuestPlanner(SpaceTimeTree):
     ) -> ob.ProblemDefinition | None:
         """The goal configuration at the times at which it is free; None if it never is."""
         problem, rng = self.problem, self.getProblemDefinition().getGoal().rng
-        times = free_times(problem, goal, np.linspace(earliest_s, latest_s, self._arrivals))
+        first_s = min(now_s + LEISURE * (earliest_s - now_s), latest_s)
+        times = free_times(problem, goal, np.linspace(first_s, latest_s, self._arrivals))
         if not times:
             return None
-        definition = super().pose(q, now_s, goal, earliest_s, latest_s)
+        definition = problem.definition(q, now_s, OneGoal(goal), rng, latest_s)
         definition.setGoal(Arrivals(problem, (q, now_s), goal, times, rng))
         if not self._treatment.own_objective:
             definition.setOptimizationObjective(Duration(problem))

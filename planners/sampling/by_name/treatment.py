@@ -19,11 +19,15 @@ class Treatment(NamedTuple):
 
 TREATMENTS: dict[str, Treatment] = {
     "BITstar": Treatment("Gammell et al., ICRA 2015", {"samples_per_batch": 20}),
-    "BKPIECE1": Treatment("Sucan and Kavraki, WAFR 2008", {"detour_rad": 0.0, "attempt": 200, "iterations": 5000}, two_trees=True),
+    "BKPIECE1": Treatment(
+        "Sucan and Kavraki, WAFR 2008", {"detour_rad": 0.0, "attempt": 200, "iterations": 5000}, two_trees=True
+    ),
     "FMT": Treatment("Janson et al., IJRR 2015", {"num_samples": 15}, own_objective=True),
     "InformedRRTstar": Treatment("Gammell et al., IROS 2014", {"goal_bias": 0.4}),
     "KPIECE1": Treatment("Sucan and Kavraki, WAFR 2008", {"goal_bias": 0.4}),
-    "LBKPIECE1": Treatment("Sucan and Kavraki, WAFR 2008", {"detour_rad": 0.0, "attempt": 1000, "iterations": 10_000}, two_trees=True),
+    "LBKPIECE1": Treatment(
+        "Sucan and Kavraki, WAFR 2008", {"detour_rad": 0.0, "attempt": 1000, "iterations": 10_000}, two_trees=True
+    ),
     "RRT": Treatment("LaValle 1998", {"goal_bias": 0.4}),
     "RRTConnect": Treatment("Kuffner and LaValle, ICRA 2000", {"detour_rad": 0.3, "attempt": 20}),
     "RRTstar": Treatment("Karaman and Frazzoli, IJRR 2011", {"goal_bias": 0.4}),
@@ -40,9 +44,19 @@ REFUSED: dict[str, str] = {
 }
 """Planners that can't work here, and why."""
 
-OMITTED: frozenset[str] = frozenset({
-    "free_space_volume",  # FMT measures it itself
-    "delay_rewiring_until_initial_solution",  # OMPL 2.0.1: "no longer has any effect"
-    "strict_queue_ordering",  # the same
-})
-"""Settings that have no effect."""
+OMITTED: dict[str, str] = {
+    "free_space_volume": "FMT measures it itself",
+    "delay_rewiring_until_initial_solution": "OMPL says: no longer has any effect",
+    "strict_queue_ordering": "OMPL says: no longer has any effect",
+    "just_in_time_sampling": "OMPL does not take it",
+    "nearest_k": "without it FMT looks at the last of no neighbours, and the process dies",
+    "informed_sampling": "makes RRTstar an InformedRRTstar; without it SORRTstar takes the process down",
+    "ordered_sampling": "makes it a SORRTstar; RRTstar takes the process down with it",
+}
+"""What OMPL lets one set and the suite does not, and why."""
+
+LEAST: dict[str, float] = {
+    "range": 0.01,  # RRT-Connect asks nobody between steps of this length
+    "radius_multiplier": 1.0,  # with much less FMT has no neighbours, and the process dies
+}
+"""Least values of settings where less costs more than a search."""
