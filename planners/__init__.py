@@ -6,6 +6,7 @@ from planners.isolation import describe
 from planners.prediction import PREDICTORS, Observation, build_predictor
 from planners.problem import TimedPath
 from planners.registry import ALIASES, PLANNERS, is_bound
+from planners.sampling.by_name import ompl_planners, ompl_refused
 from planners.session import Plan, Session, check_fit
 from planners.spec import PlannerSpec, label_of, parse_planner, split_specs
 
@@ -27,6 +28,8 @@ __all__ = [
     "failure_of",
     "is_bound",
     "label_of",
+    "ompl_planners",
+    "ompl_refused",
     "parse_planner",
     "split_specs",
 ]

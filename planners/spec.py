@@ -16,6 +16,7 @@ from planners import plugins
 from planners.base import ArmPlanner
 from planners.failure import Failure
 from planners.registry import ALIASES, PLANNERS
+from planners.sampling import by_name
 from scenarios.spec import SpecError, known_name, parse_settings, parse_spec
 from scenarios.spec import split_specs as split_texts
 
@@ -69,8 +70,10 @@ def read_spec(text: str) -> Typed:
         raise SpecError(f"{typed}[name]: found {given!r}, allowed at most 40 letters, digits and _.+-")
     if plugins.is_reference(typed):
         short, name, preset = typed.rpartition(":")[2], plugins.resolved(typed), dict[str, str]()
+    elif by_name.is_guest(typed):
+        short, name, preset = typed, by_name.known_guest(typed), {}
     else:
-        known_name("planner", typed, [*PLANNERS, *ALIASES, *plugins.offered()])
+        known_name("planner", typed, [*PLANNERS, *ALIASES, *plugins.offered(), "ompl.NAME"])
         name, preset = ALIASES.get(typed, (typed, {}))
         short = typed
     fixed = [key for key in values if key in preset]
@@ -83,12 +86,14 @@ def read_spec(text: str) -> Typed:
 
 def is_outside(name: str) -> bool:
     """Whether a planner's code is not the suite's or OMPL's."""
-    return plugins.is_reference(name) or name not in PLANNERS
+    return plugins.is_reference(name) or not (name in PLANNERS or by_name.is_guest(name))
 
 
 def planner_class(name: str) -> type[ArmPlanner]:
     """The class of a planner, by a spec's ``name``; a planner from outside is imported, and may raise anything."""
-    return PLANNERS[name] if name in PLANNERS else plugins.load_class(name)
+    if is_outside(name):
+        return plugins.load_class(name)
+    return PLANNERS[name] if name in PLANNERS else by_name.guest_planner(name)
 
 
 def parse_planner(text: str) -> PlannerSpec:

@@ -21,14 +21,11 @@ from planners.problem.goals import OneGoal
 from scenarios.arm import FloatArray
 
 
-class TreeSettings(BaseModel):
-    """Settings that all trees share."""
+class AttemptSettings(BaseModel):
+    """Settings of a search in attempts."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    range: float = Field(
-        default=1000.0, gt=0, le=1000, description="longest motion added to a tree, in space-time units"
-    )
     iterations: int = Field(default=1000, ge=1, le=10**9, description="budget of one solve, in samples")
     attempt: int = Field(
         default=50, ge=1, le=10**9, description="samples spent on a goal configuration before the next"
@@ -37,6 +34,18 @@ class TreeSettings(BaseModel):
     detour_rad: float = Field(default=1.0, ge=0, le=10, description="widening of the box about start and goal")
     slack_s: float = Field(default=20.0, gt=0, le=3600, description="latest arrival tried, after the earliest possible")
     horizon_s: float = Field(default=90.0, gt=0, le=3600, description="latest arrival considered, from now")
+
+
+class RangeSettings(BaseModel):
+    """How far a tree grows at a time."""
+
+    range: float = Field(
+        default=1000.0, gt=0, le=1000, description="longest motion added to a tree, in space-time units"
+    )
+
+
+class TreeSettings(AttemptSettings, RangeSettings):
+    """Settings that all trees share."""
 
 
 class RRTSettings(TreeSettings):
@@ -48,11 +57,10 @@ class RRTSettings(TreeSettings):
 class SpaceTimeTree(ReplanningPlanner):
     """Lends one of OMPL's trees a goal and a part of space-time, attempt after attempt, until it has a path."""
 
-    def __init__(self, problem: SpaceTimeProblem, settings: TreeSettings, tree: ob.Planner) -> None:
+    def __init__(self, problem: SpaceTimeProblem, settings: AttemptSettings, tree: ob.Planner) -> None:
         """Plan on ``problem`` with ``tree``, a planner on the same space."""
         super().__init__(problem, settings)
         self._settings, self._tree = settings, tree
-        tree.setRange(settings.range)
 
     def search(self, q: FloatArray, now_s: float, stop: Callable[[], bool]) -> TimedPath | None:
         """The first path to the goal; else the one that leads nearest to it."""
@@ -62,7 +70,7 @@ class SpaceTimeTree(ReplanningPlanner):
         for k in itertools.cycle(np.argsort(earliest_s)[: self._settings.goals]):
             if stop():
                 break
-            found = self._attempt(q, now_s, configurations[k], float(earliest_s[k]), stop)
+            found = self.attempt(q, now_s, configurations[k], float(earliest_s[k]), stop)
             distance = math.inf if found is None else self.problem.query.goal_distance(found.configurations_rad[-1])
             if distance < nearest:
                 nearest, path = distance, found
@@ -70,16 +78,16 @@ class SpaceTimeTree(ReplanningPlanner):
                 break
         return path
 
-    def _attempt(
+    def attempt(
         self, q: FloatArray, now_s: float, goal: FloatArray, earliest_s: float, stop: Callable[[], bool]
     ) -> TimedPath | None:
         """Grow a tree towards one goal configuration (dof,) [rad]."""
         settings, problem = self._settings, self.problem
         latest_s = min(earliest_s + settings.slack_s, now_s + settings.horizon_s)
-        reach, detour = problem.query.arm.max_bend_rad, settings.detour_rad
-        low, high = np.minimum(q, goal) - detour, np.maximum(q, goal) + detour
-        problem.confine(np.maximum(low, -reach), np.minimum(high, reach), now_s, latest_s)
-        definition = problem.definition(q, now_s, OneGoal(goal), self.goal.rng, latest_s)
+        problem.confine(*self.box(q, goal), now_s, latest_s)
+        definition = self.pose(q, now_s, goal, earliest_s, latest_s)
+        if definition is None:
+            return None
         self._tree.setProblemDefinition(definition)
         self._tree.setup()
         left = iter(range(settings.attempt))
@@ -88,6 +96,19 @@ class SpaceTimeTree(ReplanningPlanner):
             return None
         states = [read_state(state, len(q)) for state in definition.getSolutionPath().getStates()]
         return TimedPath(np.array([t for _, t in states]), np.array([configuration for configuration, _ in states]))
+
+    def box(self, q: FloatArray, goal: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Corners (dof,) [rad] of the box about ``q`` and ``goal`` (dof,) [rad], widened by the detour."""
+        reach, detour = self.problem.query.arm.max_bend_rad, self._settings.detour_rad
+        low, high = np.minimum(q, goal) - detour, np.maximum(q, goal) + detour
+        return np.maximum(low, -reach), np.minimum(high, reach)
+
+    def pose(
+        self, q: FloatArray, now_s: float, goal: FloatArray, earliest_s: float, latest_s: float
+    ) -> ob.ProblemDefinition | None:
+        """What the tree is asked for in an attempt; None where there is nothing to ask for."""
+        del earliest_s
+        return self.problem.definition(q, now_s, OneGoal(goal), self.goal.rng, latest_s)
 
 
 class RRTPlanner(SpaceTimeTree):
@@ -101,6 +122,7 @@ class RRTPlanner(SpaceTimeTree):
     def __init__(self, problem: SpaceTimeProblem, settings: RRTSettings) -> None:
         """Plan on ``problem``."""
         tree = og.RRT(problem.si)
+        tree.setRange(settings.range)
         tree.setGoalBias(settings.goal_bias)
         super().__init__(problem, settings, tree)
 
@@ -115,4 +137,6 @@ class RRTConnectPlanner(SpaceTimeTree):
 
     def __init__(self, problem: SpaceTimeProblem, settings: TreeSettings) -> None:
         """Plan on ``problem``."""
-        super().__init__(problem, settings, og.RRTConnect(problem.si))
+        tree = og.RRTConnect(problem.si)
+        tree.setRange(settings.range)
+        super().__init__(problem, settings, tree)

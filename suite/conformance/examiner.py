@@ -5,9 +5,10 @@ from __future__ import annotations
 import json
 import sys
 
-from planners import PlannerSpec, parse_planner, warm_up
+from planners import PlannerSpec, parse_planner
 from planners.conformance.elsewhere import answers_alone
 from planners.failure import failure_of
+from planners.first_use import warm_up_planner, warm_up_problem
 from scenarios import ContinuumArm, SpecError
 from suite.conformance.checks import CHECKS, checks_for
 from suite.conformance.finding import IMPORT
@@ -19,7 +20,8 @@ def main() -> None:
     with answers_alone() as out:
         order = json.loads(sys.stdin.readline())
         sys.path[:] = order["path"]  # what the asker can import can be imported here
-        warm_up([parse_planner("rrt")], ContinuumArm())
+        warm_up_problem(ContinuumArm())
+        warm_up_planner(parse_planner("rrt"), "portfolio", ContinuumArm())
         print(json.dumps("ready"), file=out, flush=True)
         for line in sys.stdin:
             name = json.loads(line)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from planners import PLANNERS, PlannerSpec, Session, parse_planner
+from planners import PLANNERS, PlannerSpec, Session, ompl_planners, parse_planner
 from planners.conformance import Check
 from planners.conformance.scenes import observe, scenes, session_of
 from suite.conformance import parametrize_with_checks
@@ -14,7 +14,9 @@ QUICK = {"clairvoyant": "clairvoyant[restarts=1,branches=300]"}
 """It tries hard before it gives up."""
 
 
-@parametrize_with_checks(list(PLANNERS), expected_failed_checks=lambda planner: FAILED.get(planner.label, {}))
+@parametrize_with_checks(
+    [*PLANNERS, *ompl_planners()], expected_failed_checks=lambda planner: FAILED.get(planner.label, {})
+)
 def test_conformance(planner: PlannerSpec, check: Check) -> None:
     gives_up = check.__name__ == "check_no_path_is_a_status"
     check(parse_planner(QUICK[planner.label]) if gives_up and planner.label in QUICK else planner)
