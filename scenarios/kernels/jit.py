@@ -47,13 +47,19 @@ def _closure(file: Path) -> set[Path]:
     while pending:
         source = pending.pop()
         found.add(source)
-        for node in ast.walk(ast.parse(source.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.ImportFrom) and node.module:
-                module = _ROOT.joinpath(*node.module.split("."))
-                names = [module / alias.name for alias in node.names]  # ``from package import module``
-                files = [module / "__init__.py", *(path.with_suffix(".py") for path in (module, *names))]
-                pending |= {path for path in files if path.is_file()} - found
+        for package, imported in _imports(source.read_bytes()):
+            module = _ROOT.joinpath(*package.split("."))
+            names = [module / name for name in imported]  # ``from package import module``
+            files = [module / "__init__.py", *(path.with_suffix(".py") for path in (module, *names))]
+            pending |= {path for path in files if path.is_file()} - found
     return found
+
+
+@functools.lru_cache(maxsize=256)  # most files are imported by many kernels' files
+def _imports(source: bytes) -> list[tuple[str, list[str]]]:
+    """Modules from which a source imports, and the names that it imports from each."""
+    nodes = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.ImportFrom)]
+    return [(node.module, [alias.name for alias in node.names]) for node in nodes if node.module]
 
 
 def kernel(function: Callable[..., Any]) -> Callable[..., Any]:

@@ -2,6 +2,9 @@
 
 import ast
 import importlib
+import os
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -42,6 +45,8 @@ def house(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     jit.source_hash.cache_clear()
     yield tmp_path / "cache_probe"
     jit.source_hash.cache_clear()
+    for name in [name for name in sys.modules if name.partition(".")[0] == "cache_probe"]:
+        del sys.modules[name]
 
 
 def test_an_edit_in_a_callee_elsewhere_is_seen(house: Path) -> None:
@@ -97,3 +102,58 @@ def test_a_bare_kernel_makes_no_array() -> None:
     assert jit.bare_kernel(last_row)(rows) == 12.0
     with pytest.raises(NumbaError, match="NRT"):
         jit.bare_kernel(doubled_sum)(rows)
+
+
+LITERALS = """
+from scenarios.kernels.jit import kernel
+
+@kernel
+def power(x, n):
+    product = 1.0
+    for _ in range(n):
+        product *= x
+    return product
+
+@kernel
+def both(x, n):
+    return power(x, 3) + power(x, 4) + power(x, n)
+"""
+
+
+def test_a_literal_in_a_call_makes_no_kernel_of_its_own(house: Path) -> None:
+    (house / "literals.py").write_text(LITERALS)
+    literals = importlib.import_module("cache_probe.literals")
+    assert literals.both(2.0, 5) == 8 + 16 + 32
+    assert len(literals.power.signatures) == 1
+
+
+COMPILES = """
+import sys, time
+from pathlib import Path
+import numpy as np
+from planners.prediction._kernels import solve
+here, other = map(Path, sys.argv[1:])
+here.touch()
+while not other.exists():
+    time.sleep(0.01)
+solve(np.eye(3, 4), 3, 0.0, np.empty((3, 3)), np.empty(3))
+print(sum(solve.stats.cache_misses.values()))
+"""
+
+
+def test_two_processes_compile_a_kernel_once(tmp_path: Path) -> None:
+    files = [str(tmp_path / name) for name in "ab"]
+    environment = os.environ | {"SUITE_CACHE_DIR": str(tmp_path / "cache")}
+    both = [
+        subprocess.Popen([sys.executable, "-c", COMPILES, *order], env=environment, stdout=subprocess.PIPE, text=True)
+        for order in (files, files[::-1])
+    ]
+    assert sum(int(process.communicate(timeout=300)[0]) for process in both) == 1
+
+
+def test_without_a_place_for_locks_kernels_still_compile(house: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object) -> int:
+        raise PermissionError
+
+    monkeypatch.setattr(jit.os, "open", refuse)
+    assert importlib.import_module("cache_probe.caller").scaled(10) == 20
