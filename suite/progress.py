@@ -48,6 +48,11 @@ def progress(total: int) -> Iterator[Advance]:
         yield advance
 
 
+def note(line: str) -> None:
+    """Say something about the run that is no progress."""
+    Console(stderr=True).print(f"suite: {line}", markup=False, highlight=False, soft_wrap=True)
+
+
 class _Lines:
     """Progress for log files."""
 

@@ -14,7 +14,7 @@ from suite.backends.local import Job, run_tasks
 from suite.backends.warm_up import warm_up_trials
 from suite.experiment.experiment import Experiment
 from suite.experiment.manifest import make_manifest
-from suite.progress import progress
+from suite.progress import note, progress
 from suite.show.derived import write_derived
 from suite.store.journal import Journal
 from suite.store.run_folder import open_run
@@ -38,18 +38,20 @@ def run_experiment(
     workers: int,
     hang_limit_s: float = DEFAULT_HANG_LIMIT_S,
     fresh: bool = False,
+    keep_stale: bool = False,
 ) -> pd.DataFrame:
     """Run what is left of an experiment and write its files.
 
     Args:
         experiment: What to run.
-        folder: Where the run lives; a run that was stopped there goes on.
+        folder: Where the run lives; one that is there goes on, and grows by what is new.
         workers: Number of worker processes.
         hang_limit_s: A trial that takes longer is killed and recorded as ``planner_hung`` [s].
         fresh: Start over, whatever an earlier run has left in the folder.
+        keep_stale: Use rows that other code has made as they are.
 
     Returns:
-        The summary, one row per number of obstacles and planner.
+        The summary, one row per number of obstacles, conditions and planner.
 
     Raises:
         SuiteError, ScenarioError: The experiment cannot be run like this; found before anything is written.
@@ -58,14 +60,17 @@ def run_experiment(
     scenarios = experiment.scenarios()
     for arm in {scenario.arm for scenario in scenarios}:
         check_fit(experiment.specs(), arm)
-    with open_run(folder, make_manifest(experiment, scenarios), fresh=fresh) as journal:
-        tasks = list(experiment.tasks(scenarios))
+    tasks = list(experiment.tasks(scenarios))
+    manifest = make_manifest(experiment, scenarios)
+    with open_run(folder, manifest, tasks, fresh=fresh, keep_stale=keep_stale) as (journal, standing):
+        for line in standing.notes():
+            note(line)
         finished = journal.finished()
         left = [task for task in tasks if task.key not in finished]
         try:
             if left:
                 _run(left, experiment.specs(), journal, workers, hang_limit_s)
-            return write_derived(folder, journal, scenarios, experiment.planners)
+            return write_derived(folder, journal, scenarios, experiment.codes())
         except KeyboardInterrupt:
             raise RunInterrupted(len(journal.finished()), len(tasks)) from None
 

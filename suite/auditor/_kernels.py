@@ -34,7 +34,7 @@ class Work(NamedTuple):
     bends: FloatArray
     fine: FloatArray
     arm_speeds: FloatArray
-    nearest: npt.NDArray[np.int64]
+    nearest: npt.NDArray[np.int64]  # obstacle and section with the smallest clearance of the last look
     looks_left: npt.NDArray[np.int64]
 
 
@@ -47,7 +47,7 @@ def make_work(n):
         np.empty(n),
         np.empty((SUB_CHORDS + 1, 9)),
         np.zeros(n * CHORDS),
-        np.zeros(1, dtype=np.int64),
+        np.zeros(2, dtype=np.int64),
         np.full(1, MAX_LOOKS, dtype=np.int64),
     )
 
@@ -211,7 +211,7 @@ def _look(q, t, soonest, smallest_before, section_length, arm_radius, truth, wor
                     )
                 if gap < smallest:
                     smallest = gap
-                    work.nearest[0] = j
+                    work.nearest[0], work.nearest[1] = j, i
                 spare, arm_speed = gap - KEPT_SHARE * min(smallest, smallest_before), work.arm_speeds[i * CHORDS + k]
                 # At the obstacle's largest speed for as long as it takes, or at its present one while that holds.
                 by_present = min(spare / (arm_speed + speed), holds)
@@ -240,13 +240,12 @@ def interpolate(q0, q1, share, q):
 
 
 @kernel
-def look_at(times, configurations, t, section_length, arm_radius, truth):
+def look_at(times, configurations, t, section_length, arm_radius, truth, work):
     """Clearance at time ``t`` of a motion that is free of lies; before its first state and after its last it rests."""
     k = _last_by(times, t)
     after = min(k + 1, times.shape[0] - 1)
     span = times[after] - times[k]
     share = min(1.0, max(0.0, (t - times[k]) / span)) if span > 0.0 else 0.0
-    work = make_work(configurations.shape[1] // 2)
     interpolate(configurations[k], configurations[after], share, work.q)
     return _look(work.q, t, 0.0, math.inf, section_length, arm_radius, truth, work)[0]
 
@@ -280,12 +279,13 @@ def _advance(q0, q1, t0, duration, start, stop, smallest, section_length, arm_ra
 def contacts(times, configurations, end, section_length, arm_radius, truth):
     """Look for contacts over [times[0], end], a motion free of lies, at whole seconds and at every instant.
 
-    Returns the time of the first contact at a whole second, of the first at any instant (nan: none), and the smallest
-    clearance seen. Once there is a contact, only whole seconds are still looked at; a contact at one of them ends it.
+    Returns the time of the first contact at a whole second, of the first at any instant (nan: none), the smallest
+    clearance seen, and which obstacle and section touched first (-1: none). Once there is a contact, only whole seconds
+    are still looked at; a contact at one of them ends it.
     """
     work = make_work(configurations.shape[1] // 2)
     work.looks_left[0] += times.shape[0]
-    swept, smallest = math.nan, math.inf
+    swept, smallest, touched, touching = math.nan, math.inf, -1, -1
     for k in range(times.shape[0] - 1):
         duration = times[k + 1] - times[k]
         if duration <= 0.0:
@@ -302,15 +302,18 @@ def contacts(times, configurations, end, section_length, arm_radius, truth):
                 swept, gap, smallest = _advance(
                     q0, q1, times[k], duration, start, stop, smallest, section_length, arm_radius, truth, work
                 )
+                if not math.isnan(swept):
+                    touched, touching = work.nearest[0], work.nearest[1]
             elif whole:
                 interpolate(q0, q1, (start - times[k]) / duration, work.q)
                 gap = _look(work.q, start, 0.0, smallest, section_length, arm_radius, truth, work)[0]
                 smallest = min(smallest, gap)
             if whole and gap <= 0.0:
-                return start, swept, smallest
+                return start, swept, smallest, touched, touching
             start = stop
-    gap = look_at(times, configurations, end, section_length, arm_radius, truth)
+    gap = look_at(times, configurations, end, section_length, arm_radius, truth, work)
     smallest = min(smallest, gap)
     if gap < CONTACT_M and math.isnan(swept):
         swept = end
-    return (end if gap <= 0.0 and end == math.floor(end) else math.nan), swept, smallest
+        touched, touching = work.nearest[0], work.nearest[1]
+    return (end if gap <= 0.0 and end == math.floor(end) else math.nan), swept, smallest, touched, touching

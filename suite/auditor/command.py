@@ -12,7 +12,7 @@ from suite.auditor.engine import Engine
 from suite.auditor.fcl_engine import sampled_contacts
 from suite.auditor.judge import audit
 from suite.auditor.trajectory_file import Trajectory, read_trajectories
-from suite.auditor.verdicts import VERDICTS, Audit, Verdict
+from suite.auditor.verdicts import VERDICTS, Audit, Contact, Verdict
 from suite.errors import SuiteError
 
 ENGINES: dict[str, Engine] = {"certificate": certified_contacts, "fcl": sampled_contacts}
@@ -40,7 +40,14 @@ def _line(trajectory: Trajectory, judged: Audit) -> str:
     verdicts = ", ".join(f"{field.replace('_', ' ')} {_words(getattr(judged, field))}" for field in VERDICTS)
     arrival = "never arrives" if math.isnan(judged.arrival_time_s) else f"arrives at {judged.arrival_time_s:.3f} s"
     clearance = f"clearance {1000.0 * judged.min_clearance_m:.2f} mm"
-    return f"{trajectory.scenario.id} {trajectory.planner}: {verdicts}; {arrival}; {clearance}"
+    return f"{trajectory.scenario.id} {trajectory.planner}: {verdicts}; {arrival}; {clearance}{_touch(judged.contact)}"
+
+
+def _touch(contact: Contact | None) -> str:
+    if contact is None:
+        return ""
+    how = "moving" if contact.is_moving else "holding"
+    return f"; section {contact.section} touches obstacle {contact.obstacle} first, while {how}"
 
 
 def _words(verdict: Verdict) -> str:

@@ -21,7 +21,7 @@ def sampled_contacts(scenario: Scenario, times_s: FloatArray, states: FloatArray
     bodies = _Bodies(scenario)
     instants = _instants(times_s, end_s)
     centers = [obstacle.position(instants) for obstacle in scenario.obstacles]
-    swept_s, smallest = math.nan, math.inf
+    swept_s, smallest, touching = math.nan, math.inf, (-1, -1)
     for i, t in enumerate(instants.tolist()):
         whole = t == math.floor(t)
         if not (whole or math.isnan(swept_s)):
@@ -29,10 +29,11 @@ def sampled_contacts(scenario: Scenario, times_s: FloatArray, states: FloatArray
         gap = bodies.clearance(_state_at(times_s, states, t), [center[i] for center in centers])
         smallest = min(smallest, gap)
         if gap <= 0.0:
-            swept_s = t if math.isnan(swept_s) else swept_s
+            if math.isnan(swept_s):
+                swept_s, touching = t, bodies.nearest()
             if whole:
-                return Contacts(t, swept_s, smallest)
-    return Contacts(math.nan, swept_s, smallest)
+                return Contacts(t, swept_s, smallest, *touching)
+    return Contacts(math.nan, swept_s, smallest, *touching)
 
 
 def _instants(times_s: FloatArray, end_s: float) -> FloatArray:
@@ -76,6 +77,16 @@ class _Bodies:
         data = fcl.DistanceData(request=fcl.DistanceRequest(enable_signed_distance=True))
         self._managers[0].distance(self._managers[1], data, fcl.defaultDistanceCallback)
         return float(data.result.min_distance)
+
+    def nearest(self) -> tuple[int, int]:
+        """Which obstacle and section have the smallest distance, pair by pair, as they were last placed."""
+        request = fcl.DistanceRequest(enable_signed_distance=True)
+        distances = [
+            [fcl.distance(capsule, shape, request, fcl.DistanceResult()) for capsule in self._capsules]
+            for shape in self._shapes
+        ]
+        obstacle, capsule = np.unravel_index(np.argmin(distances), np.shape(distances))
+        return int(obstacle), int(capsule) // _CAPSULES
 
 
 def _manager(objects: list[fcl.CollisionObject]) -> fcl.DynamicAABBTreeCollisionManager:

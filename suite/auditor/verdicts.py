@@ -40,6 +40,18 @@ class Verdict(NamedTuple):
     """One of ``Kind``; empty when there is none."""
 
 
+class Contact(NamedTuple):
+    """The first touch of arm and obstacles, at any instant."""
+
+    time_s: float
+    obstacle: int
+    """Which of the scenario's obstacles, counted from 1."""
+    section: int
+    """Which section of the arm, counted from 1 at the base."""
+    is_moving: bool
+    """Whether the arm moved on the way there; false where it held still and the obstacle came."""
+
+
 class Audit(NamedTuple):
     """The three verdicts, each stricter than the one before, and what else was measured on the way."""
 
@@ -55,3 +67,5 @@ class Audit(NamedTuple):
     """Smallest clearance seen [m]; docs/audit.md says how far from the smallest there is. inf without obstacles."""
     end_time_s: float
     """Where the audit ended: at arrival, at the time limit or at the last timed state that can be [s]."""
+    contact: Contact | None = None
+    """What touched first; None where nothing did."""

@@ -17,6 +17,7 @@ from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection, wait
 from typing import Any
 
+from suite.trial.raised import in_a_line, in_full
 from suite.trial.task import TrialResult, TrialTask, failed_trial
 
 _CONTEXT = multiprocessing.get_context("spawn")  # a forked child would inherit the locks of OMPL's and Numba's threads
@@ -166,8 +167,8 @@ def _attempt(job: Job, task: TrialTask) -> TrialResult:
     try:
         return job.run(task)
     except Exception as error:  # noqa: BLE001  a planner may raise anything; it becomes a row, not the end of the run
-        message = f"{type(error).__name__}: {error}".splitlines()[0]
-        return failed_trial(task, "planner_error", message[:300], time.monotonic() - started_s)
+        elapsed_s = time.monotonic() - started_s
+        return failed_trial(task, "planner_error", in_a_line(error), elapsed_s, in_full(error))
 
 
 def _cause_of_death(exitcode: int | None) -> str:

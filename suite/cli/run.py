@@ -18,6 +18,7 @@ from suite.cli.options import (
     experiment_of,
     say,
     split,
+    usage,
     whole_numbers,
     within,
 )
@@ -51,8 +52,11 @@ def run(
     hang_limit_s: Annotated[float, typer.Option(help="A trial that takes longer is killed.")] = 300.0,
     out: Annotated[Path | None, typer.Option(help="Folder of the run. [default: results/NAME]")] = None,
     fresh: Annotated[bool, typer.Option("--fresh", help="Start over what the folder holds.")] = False,
+    keep_stale: Annotated[
+        bool, typer.Option("--keep-stale", help="Use rows there that other code has made, as they are.")
+    ] = False,
 ) -> None:
-    """Run every planner on the same scenarios and compare them; a stopped run goes on where it was."""
+    """Run every planner on the same scenarios and compare them; what a run in the folder has already is kept."""
     from suite.runner import RunInterrupted, run_experiment
     from suite.show.terminal import print_summary
 
@@ -71,10 +75,14 @@ def run(
     }
     n_workers = within("--workers", cores() if workers is None else workers, 1, 1024)
     within("--hang-limit-s", hang_limit_s, 1, 1e6)
+    if fresh and keep_stale:
+        raise usage("--keep-stale: found beside --fresh, allowed one of them")
     experiment = experiment_of(preset, {name: value for name, value in fields.items() if value is not None})
     folder = out or Path("results") / experiment.name
     try:
-        summary = run_experiment(experiment, folder, workers=n_workers, hang_limit_s=hang_limit_s, fresh=fresh)
+        summary = run_experiment(
+            experiment, folder, workers=n_workers, hang_limit_s=hang_limit_s, fresh=fresh, keep_stale=keep_stale
+        )
     except RunInterrupted as stop:
         say(f"stopped: {stop} in {folder}; the same command goes on from there")
         raise typer.Exit(EXIT_INTERRUPTED) from None

@@ -24,11 +24,12 @@ STUCK_S = 10.0
 def run_trial(task: TrialTask) -> TrialResult:
     """Run one planner on one scenario and judge what was executed."""
     started = time.perf_counter()
-    scenario = task.scenario
+    scenario = task.scenario  # no planner ever sees this one: what it is handed, it may change
     if not start_is_free(scenario):
         message = "the start is hit while the obstacles are observed"
         return failed_trial(task, "invalid_scenario", message, time.perf_counter() - started)
-    session = Session(task.spec, scenario, predictor=task.predictor, limits=task.limits, seed=task.trial_seed)
+    theirs = scenario.model_copy(deep=True)
+    session = Session(task.spec, theirs, predictor=task.predictor, limits=task.limits, seed=task.trial_seed)
     observer, execution, solves = Observer(task), Execution(scenario), list[Plan]()
     outcome, message = "", ""
     while not (outcome or execution.has_arrived):
@@ -91,6 +92,10 @@ def _judgement(judged: Audit) -> dict[str, object]:
         columns[f"success_{name}"] = verdict.success
         columns[f"violation_{name}_time_s"] = verdict.violation_time_s
         columns[f"violation_{name}_kind"] = verdict.violation_kind or None
+    if judged.contact is not None:
+        columns["contact_obstacle"] = judged.contact.obstacle
+        columns["contact_section"] = judged.contact.section
+        columns["contact_while"] = "moving" if judged.contact.is_moving else "holding"
     return columns
 
 

@@ -1,11 +1,17 @@
 import multiprocessing
 import time
+from pathlib import Path
 
+import fakes
 import pytest
 from fakes import behave, cannot_prepare, make_tasks, prepare
 
 from suite.backends.local import Job, WorkerStartError, run_tasks
 from suite.trial.columns import TIMING_NAMES, Row
+
+LINE_THAT_RAISES = 1 + next(
+    number for number, line in enumerate(Path(fakes.__file__).read_text().splitlines()) if "raise ValueError" in line
+)
 
 
 def rows_of(labels: list[str], trials: int, workers: int, hang_limit_s: float = 60.0) -> dict[tuple[str, str], Row]:
@@ -21,7 +27,7 @@ def test_hangs_and_crashes_are_rows_and_the_rest_goes_on() -> None:
     rows = rows_of(["fine", "hang", "raise", "die", "quit"], trials=1, workers=2, hang_limit_s=0.5)
     found = {row["planner"]: (row["outcome"], row["message"]) for row in rows.values()}
     assert found["hang"] == ("planner_hung", "killed after 0.5 s")
-    assert found["raise"] == ("planner_error", "ValueError: two")
+    assert found["raise"] == ("planner_error", f"ValueError: two (fakes.py:{LINE_THAT_RAISES})")
     assert found["die"] == ("planner_error", "the process died: SIGKILL")
     assert found["quit"] == ("planner_error", "the process died: exit code 0")
     assert found["fine"][0] in {"reached", "collided"}
