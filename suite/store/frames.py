@@ -106,5 +106,17 @@ def _with_unknown(frame: pd.DataFrame, columns: Iterable[Column]) -> pd.DataFram
 def _read_csv(file: Path, types: Mapping[str, str]) -> pd.DataFrame:
     try:
         return pd.read_csv(file, dtype=dict(types), keep_default_na=False, na_values=[""])
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, TypeError) as error:
         raise SuiteError(f"{file}: cannot be read: {error}"[:300]) from None
+
+
+def refuse_gaps(trials: pd.DataFrame, file: Path) -> pd.DataFrame:
+    """Return ``trials`` if every one says which it is; a file may have been written by anyone.
+
+    Raises:
+        SuiteError: Scenario, planner or outcome is missing somewhere.
+    """
+    for name in ("scenario_id", "scenario_hash", "family", "n_obstacles", "planner", "outcome"):
+        if trials[name].isna().any():
+            raise SuiteError(f"{file}: found a trial without {name}, allowed: every trial has one")
+    return trials

@@ -16,7 +16,7 @@ from suite.errors import SuiteError
 from suite.experiment.code import House, changes
 from suite.experiment.manifest import Manifest
 from suite.files import write_text
-from suite.store.frames import read_table_csv, read_trials_csv, trials_frame
+from suite.store.frames import read_table_csv, read_trials_csv, refuse_gaps, trials_frame
 from suite.store.growth import Standing, settle
 from suite.store.journal import Journal
 from suite.store.schema import is_journal
@@ -70,10 +70,10 @@ def read_trials(folder: Path) -> pd.DataFrame | None:
     if (folder / JOURNAL).exists():
         try:
             with Journal(folder / JOURNAL, read_only=True, old_house=_old_house(folder)) as journal:
-                return trials_frame(journal.rows())
+                return refuse_gaps(trials_frame(journal.rows()), folder / JOURNAL)
         except (OSError, sqlite3.Error) as error:
             raise SuiteError(f"{folder / JOURNAL}: cannot be read: {error}"[:300]) from None
-    return read_trials_csv(folder / TRIALS) if (folder / TRIALS).exists() else None
+    return refuse_gaps(read_trials_csv(folder / TRIALS), folder / TRIALS) if (folder / TRIALS).exists() else None
 
 
 def read_table(folder: Path) -> pd.DataFrame:
@@ -122,7 +122,9 @@ def open_run(
             journal.complete(tasks)
             _write_manifest(folder, manifest)
         except (OSError, sqlite3.Error) as error:
-            raise SuiteError(f"{folder}: cannot be written: {getattr(error, 'strerror', None) or error}") from None
+            raise SuiteError(
+                f"{folder}: cannot be read or written: {getattr(error, 'strerror', None) or error}"
+            ) from None
         yield journal, standing
 
 

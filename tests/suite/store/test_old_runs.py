@@ -195,6 +195,22 @@ def test_a_committed_run_without_trials_prints_its_table(name: str, format: str,
     assert snapshot(RESULTS / name) == before
 
 
+@pytest.mark.parametrize("name", ["scenario_hash", "n_obstacles", "planner", "outcome"])
+def test_a_trial_that_does_not_say_which_it_is_is_one_line(tmp_path, name: str, capfd) -> None:
+    run_with_fakes(tmp_path)
+    change(tmp_path / "run.db", f"UPDATE trials SET {name} = NULL WHERE number = 3")
+    trials = pd.read_csv(tmp_path / "trials.csv", dtype=object)
+    trials.loc[2, name] = None
+    trials.to_csv(tmp_path / "trials.csv", index=False)
+    for _ in ("the journal", "trials.csv"):
+        capfd.readouterr()
+        assert main(["table", str(tmp_path)]) == 2
+        err = capfd.readouterr().err
+        assert f"found a trial without {name}" in err
+        assert err.count("\n") == 1
+        (tmp_path / "run.db").unlink(missing_ok=True)
+
+
 @pytest.mark.parametrize(
     ("text", "line"),
     [

@@ -2,6 +2,7 @@ import json
 import sqlite3
 from contextlib import suppress
 from pathlib import Path
+from shutil import copytree
 from unittest.mock import patch
 
 import pytest
@@ -50,14 +51,22 @@ class Killed(BaseException):
     pass
 
 
+@pytest.fixture(scope="module")
+def killed(tmp_path_factory) -> Path:
+    """A run that was killed when it had grown by a trial: there is a log beside its journal."""
+    folder = tmp_path_factory.mktemp("killed")
+    run_with_fakes(folder)
+    (folder / "notes.txt").write_text("mine")  # without a manifest or a journal, this would be no folder of a run
+    killed_run(folder, trials=5, die_after=1)
+    assert (folder / "run.db-wal").stat().st_size > 0
+    return folder
+
+
 @pytest.mark.parametrize("has_manifest", [True, False])
 @pytest.mark.parametrize("deleted", range(8))
-def test_fresh_can_be_cut_short_anywhere(tmp_path, deleted: int, has_manifest: bool) -> None:
-    folder = tmp_path / "run"
-    run_with_fakes(folder)
-    whole = contents(folder)
-    (folder / "notes.txt").write_text("mine")  # without a manifest or a journal, this would be no folder of a run
-    killed_run(folder, trials=5, die_after=1)  # leaves a log beside the journal
+def test_fresh_can_be_cut_short_anywhere(tmp_path, killed, deleted: int, has_manifest: bool) -> None:
+    whole, folder = contents(killed), tmp_path / "run"
+    copytree(killed, folder)
     if not has_manifest:
         (folder / "manifest.json").unlink()
     left = iter(range(deleted))
