@@ -1,6 +1,7 @@
 # `make run` and `make test` need only make and Python >= 3.11; everything else goes into $(VENV).
 #   make run PYTHON=python3.12        another interpreter
 #   make run VENV=/some/where         another virtual environment
+#   make mutants MUTANTS="audit arm"  those of the small wrong changes whose names hold one of these words
 #   make bench BENCH=--quick          a short look; BENCH="validity step" runs these parts alone
 
 PYTHON ?= python3
@@ -8,13 +9,16 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 
-.PHONY: run test bench lint lock clean
+.PHONY: run test mutants bench lint lock clean
 
 run: $(INSTALLED)
 	$(BIN)/suite run --planners temporal,rrt,pf
 
 test: $(INSTALLED)
 	$(BIN)/python -m pytest
+
+mutants: $(INSTALLED)
+	$(BIN)/python -m tests.mutants $(MUTANTS)
 
 bench: $(INSTALLED)
 	$(BIN)/python -m benchmarks $(BENCH)

@@ -4,7 +4,7 @@ import json
 import math
 import os
 import reprlib
-from collections.abc import Sequence
+from collections.abc import Hashable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +30,44 @@ def _parse_yaml(text: str) -> Any:
         # libyaml takes time quadratic in the depth.
         if depth > MAX_DEPTH:
             raise yaml.YAMLError(f"found values nested deeper than {MAX_DEPTH}")
-    return yaml.load(text, Loader=yaml.CSafeLoader)
+    return yaml.load(text, Loader=_Loader)
+
+
+class _Loader(yaml.CSafeLoader):
+    """YAML's safe loader, which by itself lets the last of two equal keys win."""
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Hashable, Any]:
+        """The mapping, if no key stands twice in it."""
+        twice = _first_twice(key.value for key, _ in node.value if isinstance(key, yaml.ScalarNode))
+        if twice is not None:
+            raise _KeyTwiceError(twice)
+        return super().construct_mapping(node, deep)
+
+
+class _KeyTwiceError(Exception):
+    """A mapping in a file has a key twice."""
+
+
+def _parse_json(text: str) -> Any:
+    return json.loads(text, object_pairs_hook=_dict_of)
+
+
+def _dict_of(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """The object, if no key stands twice in it: Python's reader lets the last one win."""
+    values = dict(pairs)
+    if len(values) < len(pairs):
+        raise _KeyTwiceError(_first_twice(key for key, _ in pairs))
+    return values
+
+
+def _first_twice(names: Iterable[str]) -> str | None:
+    """The first name that was there before; None when all differ."""
+    seen = set[str]()
+    for name in names:
+        if name in seen:
+            return name
+        seen.add(name)
+    return None
 
 
 def load_scenarios(path: str | os.PathLike[str]) -> list[Scenario]:
@@ -47,9 +84,8 @@ def load_scenarios(path: str | os.PathLike[str]) -> list[Scenario]:
     count = len(entries)
     entries.reverse()  # taken from the end, each is gone when the next is read: a large file is not held twice
     scenarios = [_validate(file, k, count, entries.pop()) for k in range(count)]
-    names = [scenario.id for scenario in scenarios]
-    if len(set(names)) < len(names):
-        twice = next(name for name in names if names.count(name) > 1)
+    twice = _first_twice(scenario.id for scenario in scenarios)
+    if twice is not None:
         raise ScenarioError(f"{file}: id: found {twice!r} twice, allowed once per file")
     return scenarios
 
@@ -85,8 +121,10 @@ def _read(file: Path) -> list[Any]:
     suffix, text = _suffix(file), _text(file)
     try:
         if suffix == ".jsonl":
-            return [json.loads(line) for line in text.splitlines() if line.strip()]
-        content = json.loads(text) if suffix == ".json" else _parse_yaml(text)
+            return [_parse_json(line) for line in text.splitlines() if line.strip()]
+        content = _parse_json(text) if suffix == ".json" else _parse_yaml(text)
+    except _KeyTwiceError as error:
+        raise ScenarioError(f"{file}: found the key {_short(error.args[0])} twice, allowed once") from None
     # ValueError: besides broken JSON, a number of thousands of digits or a date such as 2024-13-45.
     except (ValueError, yaml.YAMLError, RecursionError) as error:
         first = " ".join(str(error).split())[:200] or type(error).__name__
@@ -99,7 +137,7 @@ def _text(file: Path) -> str:
         size = file.stat().st_size
         if size > MAX_FILE_BYTES:
             raise ScenarioError(f"{file}: found {size} bytes, allowed {MAX_FILE_BYTES}")
-        return file.read_text(encoding="utf-8")
+        return file.read_text(encoding="utf-8-sig")  # some editors begin a file with a mark
     except OSError as error:
         raise ScenarioError(f"{file}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:

@@ -19,6 +19,7 @@ REFINE_RATIO = 10.0  # too small: below this many pads
 
 CONTACT_M = 1e-4
 KEPT_SHARE = 0.75  # of the smallest clearance seen: advancing proves that no instant has less
+DEEPER_SHARE = 0.25  # of the depth seen, CONTACT_M at least: advancing proves that no instant is deeper by more
 MAX_LOOKS = 1_000_000  # beyond one per timed state; seconds of work. What is not proven by then counts as contact
 
 SMOOTH, TRACK = range(2)
@@ -35,6 +36,7 @@ class Work(NamedTuple):
     fine: FloatArray
     arm_speeds: FloatArray
     nearest: npt.NDArray[np.int64]  # obstacle and section with the smallest clearance of the last look
+    touching: npt.NDArray[np.int64]  # those of the first contact; -1 until then
     looks_left: npt.NDArray[np.int64]
 
 
@@ -48,6 +50,7 @@ def make_work(n):
         np.empty((SUB_CHORDS + 1, 9)),
         np.zeros(n * CHORDS),
         np.zeros(2, dtype=np.int64),
+        np.full(2, -1, dtype=np.int64),
         np.full(1, MAX_LOOKS, dtype=np.int64),
     )
 
@@ -176,8 +179,16 @@ def obstacle_at(j, t, truth):
 
 
 @kernel
+def kept(smallest):
+    """The clearance above which advancing keeps all instants, once ``smallest`` has been seen."""
+    if smallest >= CONTACT_M:
+        return KEPT_SHARE * smallest
+    return smallest - max(CONTACT_M, DEEPER_SHARE * abs(smallest))
+
+
+@kernel
 def _look(q, t, soonest, smallest_before, section_length, arm_radius, truth, work):
-    """Clearance at an instant, and a time within which no clearance falls to KEPT_SHARE of the smallest seen.
+    """Clearance at an instant, and a time within which no clearance falls to what is ``kept`` of the smallest seen.
 
     That time is at most ``soonest``: inf for all there is, 0 to spare the work where only the clearance is wanted.
     """
@@ -195,7 +206,7 @@ def _look(q, t, soonest, smallest_before, section_length, arm_radius, truth, wor
             apart = math.sqrt((middle[0] - x) ** 2 + (middle[1] - y) ** 2 + (middle[2] - z) ** 2)
             bound = apart - 0.5 * section_length - reach
             fastest = work.arm_speeds[(i + 1) * CHORDS - 1] + truth.speeds_m_s[j]
-            if bound >= smallest and bound - KEPT_SHARE * min(smallest, smallest_before) >= soonest * fastest:
+            if bound >= smallest and bound - kept(min(smallest, smallest_before)) >= soonest * fastest:
                 continue
             bend, length = work.bends[i] / CHORDS, section_length / CHORDS
             pad = length * bend / 8.0
@@ -212,7 +223,7 @@ def _look(q, t, soonest, smallest_before, section_length, arm_radius, truth, wor
                 if gap < smallest:
                     smallest = gap
                     work.nearest[0], work.nearest[1] = j, i
-                spare, arm_speed = gap - KEPT_SHARE * min(smallest, smallest_before), work.arm_speeds[i * CHORDS + k]
+                spare, arm_speed = gap - kept(min(smallest, smallest_before)), work.arm_speeds[i * CHORDS + k]
                 # At the obstacle's largest speed for as long as it takes, or at its present one while that holds.
                 by_present = min(spare / (arm_speed + speed), holds)
                 soonest = min(soonest, max(spare / (arm_speed + truth.speeds_m_s[j]), by_present))
@@ -251,13 +262,20 @@ def look_at(times, configurations, t, section_length, arm_radius, truth, work):
 
 
 @kernel
+def _touch(work):
+    """Keep what is nearest at the first contact."""
+    if work.touching[0] < 0:
+        work.touching[0], work.touching[1] = work.nearest[0], work.nearest[1]
+
+
+@kernel
 def _advance(q0, q1, t0, duration, start, stop, smallest, section_length, arm_radius, truth, work):
     """Conservative advancement over [start, stop) of the motion from (q0, t0) to (q1, t0 + duration).
 
     Returns the time of the first contact (nan: none), the clearance at ``start`` and the smallest seen.
     """
     share, until = (start - t0) / duration, (stop - t0) / duration
-    at_start = math.nan
+    touched, at_start = math.nan, math.nan
     while True:
         t = t0 + share * duration
         interpolate(q0, q1, share, work.q)
@@ -265,14 +283,14 @@ def _advance(q0, q1, t0, duration, start, stop, smallest, section_length, arm_ra
         smallest = min(smallest, gap)
         if math.isnan(at_start):
             at_start = gap
-        if gap < CONTACT_M:
-            return t, at_start, smallest
         ahead = share + safe / duration
-        if ahead == share or work.looks_left[0] < 0:
-            return t, at_start, smallest  # not even a tick of the clock is proven
+        unproven = ahead == share or work.looks_left[0] < 0  # not even a tick of the clock is proven
+        if math.isnan(touched) and (gap < CONTACT_M or unproven):
+            touched = t
+            _touch(work)
         share = ahead
-        if share >= until:
-            return math.nan, at_start, smallest
+        if share >= until or unproven:
+            return touched, at_start, smallest
 
 
 @kernel
@@ -280,12 +298,12 @@ def contacts(times, configurations, end, section_length, arm_radius, truth):
     """Look for contacts over [times[0], end], a motion free of lies, at whole seconds and at every instant.
 
     Returns the time of the first contact at a whole second, of the first at any instant (nan: none), the smallest
-    clearance seen, and which obstacle and section touched first (-1: none). Once there is a contact, only whole seconds
-    are still looked at; a contact at one of them ends it.
+    clearance of all, and which obstacle and section touched first (-1: none). Once the work that is allowed is done,
+    only whole seconds are still looked at.
     """
     work = make_work(configurations.shape[1] // 2)
     work.looks_left[0] += times.shape[0]
-    swept, smallest, touched, touching = math.nan, math.inf, -1, -1
+    per_step, swept, smallest = math.nan, math.nan, math.inf
     for k in range(times.shape[0] - 1):
         duration = times[k + 1] - times[k]
         if duration <= 0.0:
@@ -298,22 +316,23 @@ def contacts(times, configurations, end, section_length, arm_radius, truth):
             stop = min(last, math.floor(start) + 1.0)
             whole = start == math.floor(start)
             gap = math.inf
-            if math.isnan(swept):
-                swept, gap, smallest = _advance(
+            if work.looks_left[0] >= 0:
+                touched, gap, smallest = _advance(
                     q0, q1, times[k], duration, start, stop, smallest, section_length, arm_radius, truth, work
                 )
-                if not math.isnan(swept):
-                    touched, touching = work.nearest[0], work.nearest[1]
+                swept = touched if math.isnan(swept) else swept
             elif whole:
                 interpolate(q0, q1, (start - times[k]) / duration, work.q)
                 gap = _look(work.q, start, 0.0, smallest, section_length, arm_radius, truth, work)[0]
                 smallest = min(smallest, gap)
-            if whole and gap <= 0.0:
-                return start, swept, smallest, touched, touching
+            if whole and gap <= 0.0 and math.isnan(per_step):
+                per_step = start
             start = stop
     gap = look_at(times, configurations, end, section_length, arm_radius, truth, work)
     smallest = min(smallest, gap)
     if gap < CONTACT_M and math.isnan(swept):
         swept = end
-        touched, touching = work.nearest[0], work.nearest[1]
-    return (end if gap <= 0.0 and end == math.floor(end) else math.nan), swept, smallest, touched, touching
+        _touch(work)
+    if gap <= 0.0 and end == math.floor(end) and math.isnan(per_step):
+        per_step = end
+    return per_step, swept, smallest, work.touching[0], work.touching[1]

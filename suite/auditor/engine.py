@@ -12,14 +12,14 @@ FloatArray = npt.NDArray[np.float64]
 
 
 class Contacts(NamedTuple):
-    """First contacts of a motion with its obstacles."""
+    """Contacts of a motion with its obstacles."""
 
     per_step_s: float
     """First whole second with a contact [s]; nan when there is none."""
     swept_s: float
     """First instant with a contact [s]; nan when there is none."""
     min_clearance_m: float
-    """Smallest clearance seen [m]; inf without obstacles."""
+    """Smallest clearance of the whole motion [m], negative by the greatest depth; inf without obstacles."""
     obstacle: int
     """Which of the scenario's obstacles was touched at ``swept_s``; -1 when there is none."""
     section: int

@@ -21,19 +21,15 @@ def sampled_contacts(scenario: Scenario, times_s: FloatArray, states: FloatArray
     bodies = _Bodies(scenario)
     instants = _instants(times_s, end_s)
     centers = [obstacle.position(instants) for obstacle in scenario.obstacles]
-    swept_s, smallest, touching = math.nan, math.inf, (-1, -1)
+    per_step_s, swept_s, smallest, touching = math.nan, math.nan, math.inf, (-1, -1)
     for i, t in enumerate(instants.tolist()):
-        whole = t == math.floor(t)
-        if not (whole or math.isnan(swept_s)):
-            continue
         gap = bodies.clearance(_state_at(times_s, states, t), [center[i] for center in centers])
         smallest = min(smallest, gap)
         if gap <= 0.0:
             if math.isnan(swept_s):
                 swept_s, touching = t, bodies.nearest()
-            if whole:
-                return Contacts(t, swept_s, smallest, *touching)
-    return Contacts(math.nan, swept_s, smallest, *touching)
+            per_step_s = t if math.isnan(per_step_s) and t == math.floor(t) else per_step_s
+    return Contacts(per_step_s, swept_s, smallest, *touching)
 
 
 def _instants(times_s: FloatArray, end_s: float) -> FloatArray:

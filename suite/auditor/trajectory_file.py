@@ -35,10 +35,11 @@ def read_trajectories(file: Path, scenarios: Sequence[Scenario]) -> list[Traject
     """Read a CSV with columns scenario_id, planner, time_s, u1_rad, v1_rad, ..., one line per timed state.
 
     Lines of different trajectories may be mixed; within one their order is kept, whatever their times say. ``nan`` and
-    ``inf`` are numbers here: judging them is the audit's business.
+    ``inf`` are numbers here: judging them is the audit's business. Blank lines are passed over.
 
     Raises:
-        SuiteError: The file cannot be read or is too large, or a line does not fit the header or its scenario.
+        SuiteError: The file cannot be read or is too large, a line does not fit the header or its scenario, or a
+            trajectory begins again.
     """
     known = {scenario.id: scenario for scenario in scenarios}
     numbers: dict[tuple[str, str], array[float]] = {}
@@ -46,14 +47,20 @@ def read_trajectories(file: Path, scenarios: Sequence[Scenario]) -> list[Traject
         size = file.stat().st_size
         if size > MAX_FILE_BYTES:
             raise SuiteError(f"{file}: found {size} bytes, allowed {MAX_FILE_BYTES}")
-        with file.open(encoding="utf-8", newline="") as handle:
+        with file.open(encoding="utf-8-sig", newline="") as handle:
             reader = csv.reader(handle)
             header = _checked_header(file, next(reader, []))
             for cells in reader:
+                if not any(map(str.strip, cells)):
+                    continue
                 where = f"{file}: line {reader.line_num}"
                 scenario = _scenario(where, header, cells, known)
                 state = _numbers(where, header[2:], cells[2:], 1 + scenario.arm.dof)
-                numbers.setdefault((scenario.id, cells[1]), array("d")).extend(state)
+                so_far = numbers.setdefault((scenario.id, cells[1]), array("d"))
+                if _begins_again(so_far, state):
+                    name = f"{scenario.id} {cells[1]}"
+                    raise SuiteError(f"{where}: found {_short(name)} beginning again, allowed once per file")
+                so_far.extend(state)
     except OSError as error:
         raise SuiteError(f"{file}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
@@ -63,6 +70,16 @@ def read_trajectories(file: Path, scenarios: Sequence[Scenario]) -> list[Traject
     if not numbers:
         raise SuiteError(f"{file}: found no timed state, allowed one line per state below the header")
     return [_trajectory(known[name], planner, flat) for (name, planner), flat in numbers.items()]
+
+
+def _begins_again(so_far: array[float], state: list[float]) -> bool:
+    """Whether ``state`` is, after later ones or as a copy, what the trajectory so far began with: it stands twice.
+
+    Time that runs backward to anywhere else is a lie, which is for the audit to date.
+    """
+    size = len(state)
+    is_first_time = len(so_far) > 0 and state[0] == so_far[0]
+    return is_first_time and (so_far[-size] > state[0] or so_far[:size] == array("d", state))
 
 
 def _trajectory(scenario: Scenario, planner: str, flat: array[float]) -> Trajectory:

@@ -51,6 +51,20 @@ class Contact(NamedTuple):
     is_moving: bool
     """Whether the arm moved on the way there; false where it held still and the obstacle came."""
 
+    @property
+    def how(self) -> str:
+        """``moving`` or ``holding``."""
+        return "moving" if self.is_moving else "holding"
+
+
+def contact_columns(contact: Contact | None) -> dict[str, int | str | None]:
+    """A contact in the columns of a row; None without one."""
+    return {
+        "contact_obstacle": contact and contact.obstacle,
+        "contact_section": contact and contact.section,
+        "contact_while": contact and contact.how,
+    }
+
 
 class Audit(NamedTuple):
     """The three verdicts, each stricter than the one before, and what else was measured on the way."""
@@ -64,7 +78,7 @@ class Audit(NamedTuple):
     arrival_time_s: float
     """Time of the first timed state with the tip within the goal tolerance [s]; nan when there is none."""
     min_clearance_m: float
-    """Smallest clearance seen [m]; docs/audit.md says how far from the smallest there is. inf without obstacles."""
+    """Smallest clearance until ``end_time_s``, contacts included [m]; inf without obstacles (docs/audit.md)."""
     end_time_s: float
     """Where the audit ended: at arrival, at the time limit or at the last timed state that can be [s]."""
     contact: Contact | None = None

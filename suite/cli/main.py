@@ -5,6 +5,7 @@ Whatever is heavy to import is imported inside the commands, so that ``suite --h
 
 from __future__ import annotations
 
+import io
 import signal
 import sys
 from collections.abc import Sequence
@@ -35,9 +36,12 @@ for verb in (run, table, generate, planners, predictors, check, audit, version):
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code.
 
-    0 is done, 2 a usage or input error, 3 nothing to compare, 130 interrupted with everything finished saved.
+    0 is done, 1 a violation under ``audit --strict``, 2 a usage or input error, 3 nothing to compare, 130 interrupted
+    with everything finished saved.
     """
     signal.signal(signal.SIGTERM, _interrupt)
+    if isinstance(sys.stdout, io.TextIOWrapper):  # a name that the terminal cannot show must not end what it names
+        sys.stdout.reconfigure(errors="backslashreplace")
     given = list(sys.argv[1:] if arguments is None else arguments)
     try:
         code = app(given or ["--help"], prog_name="suite", standalone_mode=False)

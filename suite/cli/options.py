@@ -12,6 +12,7 @@ import typer
 if TYPE_CHECKING:
     from suite.experiment.experiment import Experiment
 
+EXIT_FOUND = 1
 EXIT_USAGE = 2
 EXIT_NOTHING = 3
 EXIT_INTERRUPTED = 130

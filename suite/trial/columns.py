@@ -99,7 +99,7 @@ MEASURED = (
     Column("tip_path_length_m", "float64", "m", "length of the executed tip path"),
     Column("smoothness_paper_rad", "float64", "rad", "the paper's smoothness S of what was executed, theta wrapped"),
     Column("smoothness_bending_rad", "float64", "rad", "sum of the changes of the bending vectors"),
-    Column("min_clearance_m", "float64", "m", "smallest clearance to a true obstacle"),
+    Column("min_clearance_m", "float64", "m", "smallest clearance to a true obstacle, negative in contact"),
     Column("state_checks", "Int64", "", "states checked for validity while planning"),
     Column("motion_checks", "Int64", "", "motions checked for validity while planning"),
     Column("message", "string", "", "what went wrong, when something did"),

@@ -12,6 +12,7 @@ import numpy as np
 from planners import Observation, Plan, Session
 from scenarios import start_is_free
 from suite.auditor import Audit, audit, collides
+from suite.auditor.verdicts import contact_columns
 from suite.trial.execution import Execution, PathError, check_path
 from suite.trial.metrics import smoothness_bending_rad, smoothness_paper_rad, tip_path_length_m
 from suite.trial.observation import Observer
@@ -86,16 +87,13 @@ def _judgement(judged: Audit) -> dict[str, object]:
     columns: dict[str, object] = {
         "arrival_time_s": judged.arrival_time_s,
         "min_clearance_m": judged.min_clearance_m,
+        **contact_columns(judged.contact),
     }
     for name in ("per_step", "swept", "executable"):
         verdict = getattr(judged, name)
         columns[f"success_{name}"] = verdict.success
         columns[f"violation_{name}_time_s"] = verdict.violation_time_s
         columns[f"violation_{name}_kind"] = verdict.violation_kind or None
-    if judged.contact is not None:
-        columns["contact_obstacle"] = judged.contact.obstacle
-        columns["contact_section"] = judged.contact.section
-        columns["contact_while"] = "moving" if judged.contact.is_moving else "holding"
     return columns
 
 

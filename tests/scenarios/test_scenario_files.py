@@ -1,7 +1,9 @@
 """Scenario files: round trips, a hash that stays, and one clear line for everything that can be wrong with one."""
 
 import json
+import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import hypothesis
 import pytest
@@ -140,6 +142,45 @@ def test_the_same_name_twice_is_refused(tmp_path: Path) -> None:
     file = tmp_path / "twice.json"
     file.write_text(json.dumps([content(), content(seed=1)]))
     assert "'fixed'" in the_error(file)
+
+
+def test_the_first_name_that_stands_twice_is_found_in_a_single_pass(tmp_path: Path, monkeypatch) -> None:
+    """A hundred thousand names, one of them twice: seconds if each is looked up among all the others."""
+    entries = [{"id": str(k)} for k in range(100_000)] + [{"id": "99999"}]
+    monkeypatch.setattr(files, "MAX_SCENARIOS", len(entries))
+    monkeypatch.setattr(files, "_validate", lambda file, index, count, entry: SimpleNamespace(**entry))
+    (tmp_path / "long.jsonl").write_text("".join(json.dumps(entry) + "\n" for entry in entries))
+    started = time.perf_counter()
+    assert "id: found '99999' twice, allowed once per file" in the_error(tmp_path / "long.jsonl")
+    assert time.perf_counter() - started < 5.0  # 0.2 s, quadratically 100 s
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_a_byte_order_mark_and_blank_last_lines_are_no_mistake(tmp_path: Path, suffix: str) -> None:
+    file = tmp_path / f"marked{suffix}"
+    save_scenarios(file, [FIXED])
+    file.write_bytes("\ufeff".encode() + file.read_bytes() + b"\n \n")
+    assert load_scenarios(file) == [FIXED]
+
+
+TWICE = {
+    "top.json": (json.dumps(content())[:-1] + ', "goal_m": [0, 0, 0]}', "goal_m"),
+    "top.jsonl": (json.dumps(content())[:-1] + ', "id": "other"}', "id"),
+    "top.yaml": (yaml.safe_dump(content()) + "seed: 4\n", "seed"),
+    "inside.json": (json.dumps(content()).replace('"kind": "orbit"', '"kind": "orbit", "kind": "orbit"'), "kind"),
+    "inside.yaml": (yaml.safe_dump(content()).replace("kind: orbit", "radius_m: 0.2\n    kind: orbit"), "radius_m"),
+    "quoted.yaml": (yaml.safe_dump(content()) + '"seed": 4\n', "seed"),
+    "long.json": ('{"' + "x" * 5000 + '": 1, "' + "x" * 5000 + '": 2}', "xxx"),
+}
+
+
+@pytest.mark.parametrize("name", TWICE)
+def test_a_key_that_stands_twice_is_refused(tmp_path: Path, name: str) -> None:
+    text, key = TWICE[name]
+    (tmp_path / name).write_text(text)
+    message = the_error(tmp_path / name)
+    assert f"found the key '{key}" in message
+    assert "twice, allowed once" in message
 
 
 DEEP = 100_000

@@ -99,3 +99,16 @@ def test_a_limit_that_is_met_exactly_is_met_at_any_pace(duration_s):
     states = np.array([[0.0, 0.0], [min(rate * duration_s, 3.0), 0.0]])
     scenario = Scenario(id="exact", arm=arm, start_rad=(0, 0), goal_m=(5, 5, 5), time_limit_s=3600)
     assert audit(scenario, [0.0, duration_s], states).executable.violation_kind == Kind.SHORT_OF_GOAL
+
+
+@pytest.mark.parametrize("limit", ["max_bend_rate_rad_s", "max_tip_speed_m_s"])
+@pytest.mark.parametrize(("share", "passes"), [(1.0, True), (1.0009, True), (1.0021, False), (1.05, False)])
+def test_the_slack_of_the_limits_is_the_one_that_docs_state(limit, share, passes):
+    """One part in a thousand passes, two are found; a tip is fastest while its section is straight."""
+    states = np.array([[0.0, 0.0], [0.3, 0.0]])
+    reached = {"max_bend_rate_rad_s": 0.3, "max_tip_speed_m_s": 0.3 * 0.15 / 2}
+    limits = {name: 1.5 * value for name, value in reached.items()} | {limit: reached[limit] / share}
+    scenario = Scenario(id="s", arm=ContinuumArm(n_sections=1, **limits), start_rad=(0, 0), goal_m=(5, 5, 5))
+    kind = audit(scenario, [0.0, 1.0], states).executable.violation_kind
+    found = Kind.BEND_RATE if limit == "max_bend_rate_rad_s" else Kind.TIP_SPEED
+    assert kind == (Kind.SHORT_OF_GOAL if passes else found)

@@ -13,6 +13,8 @@ from fake_runs import run_with_fakes
 from scenarios import generate, load_scenarios, save_scenarios
 from suite.cli.main import main
 
+CALLS_HOME = os.environ | {"PYTHONPATH": str(Path(__file__).parents[3])}
+
 
 @pytest.fixture(autouse=True)
 def _in_an_empty_folder(tmp_path, monkeypatch) -> None:
@@ -151,6 +153,13 @@ def test_check_finds_a_start_that_is_hit(tmp_path, capfd) -> None:
     assert "hit.json" in capfd.readouterr().err
 
 
+def test_a_name_that_the_terminal_cannot_show_is_escaped(tmp_path) -> None:
+    save_scenarios(tmp_path / "ř中.json", generate("orbit", 0, 1, 0))
+    call = [sys.executable, "-m", "suite", "check", "ř中.json"]
+    checked = subprocess.run(call, env=CALLS_HOME | {"PYTHONIOENCODING": "cp1252"}, capture_output=True, check=True)
+    assert checked.stdout.decode("cp1252").startswith("\\u0159\\u4e2d.json: 1 scenarios")
+
+
 def test_planners_lists_every_setting(capfd) -> None:
     from planners import PLANNERS, PREDICTORS
 
@@ -194,7 +203,7 @@ def test_nothing_to_compare_is_exit_3(tmp_path, capfd) -> None:
 def start(arguments: str) -> subprocess.Popen[str]:
     return subprocess.Popen(
         [sys.executable, "-m", "suite", *arguments.split()],
-        env=os.environ | {"PYTHONPATH": str(Path(__file__).parents[3])},
+        env=CALLS_HOME,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
