@@ -48,6 +48,7 @@ class Facts(BaseModel):
 
     settings: dict[str, Any] = {}
     predictor: str = "cubic"
+    prediction_margin: float = 0.0
     is_bound: bool = False
     mistake: str = ""
     """A user's mistake in the spec."""
@@ -75,7 +76,16 @@ def describe(text: str, limit_s: float = LIMIT_S) -> PlannerSpec:
     if facts.mistake:
         raise SpecError(facts.mistake)
     settings = OutsideSettings(**(typed.values if facts.failure else facts.settings))
-    return PlannerSpec(typed.label, typed.name, settings, facts.predictor, facts.is_bound, code, facts.failure)
+    return PlannerSpec(
+        typed.label,
+        typed.name,
+        settings,
+        facts.predictor,
+        facts.prediction_margin,
+        facts.is_bound,
+        code,
+        facts.failure,
+    )
 
 
 @functools.lru_cache(maxsize=256)
@@ -127,4 +137,9 @@ def _look_at(text: str) -> Facts:
         found = f"predictor: found {spec.predictor!r}, allowed {', '.join(PREDICTORS)}"
         return Facts(failure=Failure("planner_error", f"in import: {found}"))
     settings = json.loads(spec.settings.model_dump_json())
-    return Facts(settings=settings, predictor=spec.predictor, is_bound=spec.is_bound)
+    return Facts(
+        settings=settings,
+        predictor=spec.predictor,
+        prediction_margin=spec.prediction_margin,
+        is_bound=spec.is_bound,
+    )

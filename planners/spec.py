@@ -34,6 +34,8 @@ class PlannerSpec(NamedTuple):
     """Its settings; of a planner from outside the values alone, which its own model has checked."""
     predictor: str = "cubic"
     """The predictor it works with unless a run asks for another."""
+    prediction_margin: float = 0.0
+    """Standard deviations by which its predicted obstacles are grown."""
     is_bound: bool = False
     """Whether it sees the true future."""
     code: str = ""
@@ -106,7 +108,7 @@ def parse_planner(text: str) -> PlannerSpec:
     planner = planner_class(name)
     settings = parse_settings(label.partition("[")[0], planner.settings_model, values)
     code = plugins.code_hash(name) if is_outside(name) else ""
-    return PlannerSpec(label, name, settings, planner.predictor, planner.is_bound, code)
+    return PlannerSpec(label, name, settings, planner.predictor, planner.prediction_margin, planner.is_bound, code)
 
 
 def label_of(text: str) -> str:

@@ -28,7 +28,7 @@ from suite.experiment.experiment import make_experiment, preset_fields
 from suite.runner import DEFAULT_HANG_LIMIT_S, run_experiment
 from suite.show.text import cells
 from suite.store.journal import Executed, Journal
-from suite.store.run_folder import JOURNAL, planner_order, read_trials
+from suite.store.run_folder import JOURNAL, planner_order, present_codes, read_manifest, read_trials
 from suite.trial import episode
 from suite.trial.observation import Observer
 from suite.trial.task import TrialResult, TrialTask
@@ -52,11 +52,14 @@ class Run:
     @property
     def trials(self) -> pd.DataFrame:
         """One row per trial; ``suite.trial.columns`` declares the columns with unit and meaning."""
-        return read_trials(self.folder)
+        trials = read_trials(self.folder)
+        if trials is None:
+            raise SuiteError(f"{self.folder}: found no trials, allowed: the folder of a run")
+        return trials
 
     def table(self) -> pd.DataFrame:
         """The comparison: one row per condition and planner, with 95 % Wilson intervals."""
-        return summarize(self.trials, planner_order(self.folder))
+        return summarize(self.trials, planner_order(self.folder), present_codes(read_manifest(self.folder)))
 
     def trajectory(self, scenario: str, planner: str) -> Executed:
         """What a planner executed in a scenario: times (k,) [s] and configurations (k, dof) [rad].
@@ -68,7 +71,7 @@ class Run:
         Raises:
             SuiteError: There is no such trial.
         """
-        with Journal(self.folder / JOURNAL) as journal:
+        with Journal(self.folder / JOURNAL, read_only=True) as journal:
             for executed in journal.executed():
                 if (executed.scenario_id, executed.planner) == (scenario, planner):
                     return executed
@@ -104,6 +107,7 @@ def run(
     processes: int = 0,
     hang_limit_s: float = DEFAULT_HANG_LIMIT_S,
     fresh: bool = False,
+    keep_stale: bool = False,
     **conditions: Any,
 ) -> Run:
     """Run planners on the same scenarios, or what is left of such a run; as ``suite run`` does.
@@ -116,6 +120,7 @@ def run(
             can't be stopped.
         hang_limit_s: In worker processes a trial that takes longer is killed [s].
         fresh: Start over what the folder holds.
+        keep_stale: Use rows that other code has made as they are.
         **conditions: Fields of ``suite.experiment.experiment.Experiment``: ``family``, ``arm``, ``obstacles``,
             ``trials``, ``seed``, ``predictor``, ``limits``, ``noise_mm``, ``dropout``, ``scenario_files``.
 
@@ -127,7 +132,7 @@ def run(
     given = conditions | ({"planners": texts} if texts else {})
     experiment = make_experiment(**(preset_fields(preset) if preset else {}) | given)
     folder = Path(out) if out is not None else Path("results") / experiment.name
-    run_experiment(experiment, folder, workers=processes, hang_limit_s=hang_limit_s, fresh=fresh)
+    run_experiment(experiment, folder, workers=processes, hang_limit_s=hang_limit_s, fresh=fresh, keep_stale=keep_stale)
     return Run(folder)
 
 

@@ -112,6 +112,11 @@ class _Bar:
             self._bar.update(self._task, description=sentence)
 
 
+def note(line: str) -> None:
+    """Say something about the run that is no progress."""
+    sys.stderr.write(f"suite: {line}\n")
+
+
 class _Lines:
     """Progress for log files."""
 

@@ -16,11 +16,11 @@ from suite.backends.processes import Processes
 from suite.backends.warm_up import warm_up_parts
 from suite.experiment.experiment import Experiment
 from suite.experiment.manifest import make_manifest
-from suite.progress import progress
+from suite.progress import note, progress
 from suite.store.journal import Journal
 from suite.store.run_folder import open_run
 from suite.trial.episode import run_trial
-from suite.trial.task import TrialTask
+from suite.trial.task import TrialTask, failed_trial
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -42,20 +42,22 @@ def run_experiment(
     workers: int | Processes,
     hang_limit_s: float = DEFAULT_HANG_LIMIT_S,
     fresh: bool = False,
+    keep_stale: bool = False,
 ) -> pd.DataFrame:
     """Run what is left of an experiment and write its files.
 
     Args:
         experiment: What to run.
-        folder: Where the run lives; a run that was stopped there goes on.
+        folder: Where the run lives; one that is there goes on, and grows by what is new.
         workers: Number of worker processes, or those that were started ahead; 0 runs the trials in this process, where
             nobody can kill a planner that hangs.
         hang_limit_s: A trial that takes longer is killed and recorded as ``planner_hung`` [s]. So is a planner's
             warm-up, which has two minutes at the least: it may have to compile.
         fresh: Start over, whatever an earlier run has left in the folder.
+        keep_stale: Use rows that other code has made as they are.
 
     Returns:
-        The summary, one row per number of obstacles and planner.
+        The summary, one row per number of obstacles, conditions and planner.
 
     Raises:
         SuiteError, ScenarioError: The experiment cannot be run like this; found before anything is written.
@@ -64,8 +66,11 @@ def run_experiment(
     scenarios = experiment.scenarios()
     for arm in {scenario.arm for scenario in scenarios}:
         check_fit(experiment.specs(), arm)
-    with open_run(folder, make_manifest(experiment, scenarios), fresh=fresh) as journal:
-        tasks = list(experiment.tasks(scenarios))
+    tasks = list(experiment.tasks(scenarios))
+    manifest = make_manifest(experiment, scenarios)
+    with open_run(folder, manifest, tasks, fresh=fresh, keep_stale=keep_stale) as (journal, standing):
+        for line in standing.notes():
+            note(line)
         finished = journal.finished()
         left = [task for task in tasks if task.key not in finished]
         # Pandas takes as long to import as workers to load their kernels.
@@ -75,13 +80,17 @@ def run_experiment(
                 _run(left, journal, workers, hang_limit_s)
             from suite.show.derived import write_derived
 
-            return write_derived(folder, journal, scenarios, experiment.planners)
+            return write_derived(folder, journal, scenarios, experiment.codes())
         except KeyboardInterrupt:
             raise RunInterrupted(len(journal.finished()), len(tasks)) from None
 
 
 def _run(tasks: Sequence[TrialTask], journal: Journal, workers: int | Processes, hang_limit_s: float) -> None:
     """Run every task and store each result as it comes."""
+    for task in tasks:
+        if task.spec.failure:
+            journal.add(task, failed_trial(task, task.spec.failure, 0.0))
+    tasks = [task for task in tasks if not task.spec.failure]
     backend: Backend = InProcess() if workers == 0 else Processes(workers) if isinstance(workers, int) else workers
     job = Job(run_trial, hang_limit_s, warm_up_parts(tasks), max(LEAST_WARM_UP_S, hang_limit_s))
     with progress(len(tasks)) as report, closing(backend.run(job, tasks, report.warm_up)) as finished:

@@ -6,11 +6,11 @@ import sys
 import time
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 from pydantic import BaseModel
 
+from planners import PlannerSpec
 from scenarios import Scenario
 from suite.backends.job import Part
 from suite.trial.task import TrialResult, TrialTask, trial_row
@@ -20,10 +20,8 @@ class FakeSettings(BaseModel):
     gain: float = 0.5
 
 
-class FakeSpec(NamedTuple):
-    label: str
-    name: str = "fake"
-    settings: BaseModel = FakeSettings()
+def fake_spec(label: str, settings: BaseModel | None = None) -> PlannerSpec:
+    return PlannerSpec(label, "fake", settings or FakeSettings())
 
 
 def make_scenario(number: int) -> Scenario:
@@ -32,7 +30,7 @@ def make_scenario(number: int) -> Scenario:
 
 def make_tasks(labels: list[str], trials: int = 1) -> list[TrialTask]:
     return [
-        TrialTask(make_scenario(number), FakeSpec(label), predictor="cubic", limits=False, seed=0)
+        TrialTask(make_scenario(number), fake_spec(label), predictor="cubic", limits=False, seed=0)
         for number in range(trials)
         for label in labels
     ]

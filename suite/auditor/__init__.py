@@ -2,6 +2,6 @@
 
 from suite.auditor.certificate import clearance, collides
 from suite.auditor.judge import audit
-from suite.auditor.verdicts import Audit, Kind, Verdict
+from suite.auditor.verdicts import Audit, Contact, Kind, Verdict
 
-__all__ = ["Audit", "Kind", "Verdict", "audit", "clearance", "collides"]
+__all__ = ["Audit", "Contact", "Kind", "Verdict", "audit", "clearance", "collides"]

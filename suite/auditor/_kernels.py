@@ -35,7 +35,8 @@ class Work(NamedTuple):
     bends: FloatArray
     fine: FloatArray
     arm_speeds: FloatArray
-    nearest: npt.NDArray[np.int64]
+    nearest: npt.NDArray[np.int64]  # obstacle and section with the smallest clearance of the last look
+    touching: npt.NDArray[np.int64]  # those of the first contact; -1 until then
     looks_left: npt.NDArray[np.int64]
 
 
@@ -48,7 +49,8 @@ def make_work(n):
         np.empty(n),
         np.empty((SUB_CHORDS + 1, 9)),
         np.zeros(n * CHORDS),
-        np.zeros(1, dtype=np.int64),
+        np.zeros(2, dtype=np.int64),
+        np.full(2, -1, dtype=np.int64),
         np.full(1, MAX_LOOKS, dtype=np.int64),
     )
 
@@ -221,7 +223,7 @@ def _look(q, t, soonest, smallest_before, section_length, arm_radius, truth, wor
                     )
                 if gap < smallest:
                     smallest = gap
-                    work.nearest[0] = j
+                    work.nearest[0], work.nearest[1] = j, i
                 spare, arm_speed = gap - kept(min(smallest, smallest_before)), work.arm_speeds[i * CHORDS + k]
                 # At the obstacle's largest speed for as long as it takes, or at its present one while that holds.
                 by_present = min(spare / (arm_speed + speed), holds)
@@ -250,15 +252,21 @@ def interpolate(q0, q1, share, q):
 
 
 @kernel
-def look_at(times, configurations, t, section_length, arm_radius, truth):
+def look_at(times, configurations, t, section_length, arm_radius, truth, work):
     """Clearance at time ``t`` of a motion that is free of lies; before its first state and after its last it rests."""
     k = _last_by(times, t)
     after = min(k + 1, times.shape[0] - 1)
     span = times[after] - times[k]
     share = min(1.0, max(0.0, (t - times[k]) / span)) if span > 0.0 else 0.0
-    work = make_work(configurations.shape[1] // 2)
     interpolate(configurations[k], configurations[after], share, work.q)
     return _look(work.q, t, 0.0, math.inf, section_length, arm_radius, truth, work)[0]
+
+
+@kernel
+def _touch(work):
+    """Keep what is nearest at the first contact."""
+    if work.touching[0] < 0:
+        work.touching[0], work.touching[1] = work.nearest[0], work.nearest[1]
 
 
 @kernel
@@ -280,6 +288,7 @@ def _advance(q0, q1, t0, duration, start, stop, smallest, section_length, arm_ra
         unproven = ahead == share or work.looks_left[0] < 0  # not even a tick of the clock is proven
         if math.isnan(touched) and (gap < CONTACT_M or unproven):
             touched = t
+            _touch(work)
         share = ahead
         if share >= until or unproven:
             return touched, at_start, smallest
@@ -289,8 +298,9 @@ def _advance(q0, q1, t0, duration, start, stop, smallest, section_length, arm_ra
 def contacts(times, configurations, end, section_length, arm_radius, truth):
     """Look for contacts over [times[0], end], a motion free of lies, at whole seconds and at every instant.
 
-    Returns the time of the first contact at a whole second, of the first at any instant (nan: none), and the smallest
-    clearance of all. Once the work that is allowed is done, only whole seconds are still looked at.
+    Returns the time of the first contact at a whole second, of the first at any instant (nan: none), the smallest
+    clearance of all, and which obstacle and section touched first (-1: none). Once the work that is allowed is done,
+    only whole seconds are still looked at.
     """
     work = make_work(configurations.shape[1] // 2)
     work.looks_left[0] += times.shape[0]
@@ -319,10 +329,11 @@ def contacts(times, configurations, end, section_length, arm_radius, truth):
             if whole and gap <= 0.0 and math.isnan(per_step):
                 per_step = start
             start = stop
-    gap = look_at(times, configurations, end, section_length, arm_radius, truth)
+    gap = look_at(times, configurations, end, section_length, arm_radius, truth, work)
     smallest = min(smallest, gap)
     if gap < CONTACT_M and math.isnan(swept):
         swept = end
+        _touch(work)
     if gap <= 0.0 and end == math.floor(end) and math.isnan(per_step):
         per_step = end
-    return per_step, swept, smallest
+    return per_step, swept, smallest, work.touching[0], work.touching[1]

@@ -21,7 +21,8 @@ def clearance(scenario: Scenario, q: npt.ArrayLike, time_s: float) -> float:
     arm = scenario.arm
     state = np.ascontiguousarray(q, dtype=np.float64).reshape(1, arm.dof)
     at = np.array([time_s], dtype=np.float64)
-    return float(_kernels.look_at(at, state, at[0], arm.section_length_m, arm.radius_m, _truth(scenario)))
+    work = _kernels.make_work(arm.n_sections)
+    return float(_kernels.look_at(at, state, at[0], arm.section_length_m, arm.radius_m, _truth(scenario), work))
 
 
 def collides(scenario: Scenario, q: npt.ArrayLike, time_s: float) -> bool:

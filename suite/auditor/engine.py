@@ -20,6 +20,10 @@ class Contacts(NamedTuple):
     """First instant with a contact [s]; nan when there is none."""
     min_clearance_m: float
     """Smallest clearance of the whole motion [m], negative by the greatest depth; inf without obstacles."""
+    obstacle: int
+    """Which of the scenario's obstacles was touched at ``swept_s``; -1 when there is none."""
+    section: int
+    """Which of the arm's sections touched it, the one at the base being 0; -1 when there is none."""
 
 
 Engine = Callable[[Scenario, FloatArray, FloatArray, float], Contacts]

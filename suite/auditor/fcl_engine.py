@@ -21,14 +21,15 @@ def sampled_contacts(scenario: Scenario, times_s: FloatArray, states: FloatArray
     bodies = _Bodies(scenario)
     instants = _instants(times_s, end_s)
     centers = [obstacle.position(instants) for obstacle in scenario.obstacles]
-    per_step_s, swept_s, smallest = math.nan, math.nan, math.inf
+    per_step_s, swept_s, smallest, touching = math.nan, math.nan, math.inf, (-1, -1)
     for i, t in enumerate(instants.tolist()):
         gap = bodies.clearance(_state_at(times_s, states, t), [center[i] for center in centers])
         smallest = min(smallest, gap)
         if gap <= 0.0:
-            swept_s = t if math.isnan(swept_s) else swept_s
+            if math.isnan(swept_s):
+                swept_s, touching = t, bodies.nearest()
             per_step_s = t if math.isnan(per_step_s) and t == math.floor(t) else per_step_s
-    return Contacts(per_step_s, swept_s, smallest)
+    return Contacts(per_step_s, swept_s, smallest, *touching)
 
 
 def _instants(times_s: FloatArray, end_s: float) -> FloatArray:
@@ -72,6 +73,16 @@ class _Bodies:
         data = fcl.DistanceData(request=fcl.DistanceRequest(enable_signed_distance=True))
         self._managers[0].distance(self._managers[1], data, fcl.defaultDistanceCallback)
         return float(data.result.min_distance)
+
+    def nearest(self) -> tuple[int, int]:
+        """Which obstacle and section have the smallest distance, pair by pair, as they were last placed."""
+        request = fcl.DistanceRequest(enable_signed_distance=True)
+        distances = [
+            [fcl.distance(capsule, shape, request, fcl.DistanceResult()) for capsule in self._capsules]
+            for shape in self._shapes
+        ]
+        obstacle, capsule = np.unravel_index(np.argmin(distances), np.shape(distances))
+        return int(obstacle), int(capsule) // _CAPSULES
 
 
 def _manager(objects: list[fcl.CollisionObject]) -> fcl.DynamicAABBTreeCollisionManager:

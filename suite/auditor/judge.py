@@ -7,9 +7,9 @@ import numpy.typing as npt
 
 from scenarios import Scenario
 from suite.auditor.certificate import certified_contacts
-from suite.auditor.engine import Engine
+from suite.auditor.engine import Contacts, Engine, FloatArray
 from suite.auditor.motion import arrival, first_excess, first_lie
-from suite.auditor.verdicts import Audit, Finding, Kind, Verdict
+from suite.auditor.verdicts import Audit, Contact, Finding, Kind, Verdict
 
 
 def audit(
@@ -57,7 +57,17 @@ def audit(
         arrival_time_s=math.nan if arrival_s is None else arrival_s,
         min_clearance_m=contacts.min_clearance_m,
         end_time_s=end_s,
+        contact=_contact(contacts, times, states),
     )
+
+
+def _contact(found: Contacts, times: FloatArray, states: FloatArray) -> Contact | None:
+    """What touched first; the interval in which or at whose end it did says whether the arm was moving."""
+    if math.isnan(found.swept_s):
+        return None
+    before = int(times.searchsorted(found.swept_s, "left")) - 1
+    is_moving = before >= 0 and bool((states[before] != states[min(before + 1, len(states) - 1)]).any())
+    return Contact(found.swept_s, found.obstacle + 1, found.section + 1, is_moving)
 
 
 def _collision(time_s: float) -> Finding | None:

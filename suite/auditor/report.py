@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 from suite.auditor.command import Judged
-from suite.auditor.verdicts import VERDICTS, Verdict
+from suite.auditor.verdicts import VERDICTS, Contact, Verdict, contact_columns
 
 COLUMNS = (
     "scenario_id",
@@ -20,6 +20,9 @@ COLUMNS = (
     *(f"violation_{name}_{what}" for name in VERDICTS for what in ("time_s", "kind")),
     "arrival_time_s",
     "min_clearance_m",
+    "contact_obstacle",
+    "contact_section",
+    "contact_while",
     "end_time_s",
 )
 
@@ -31,7 +34,8 @@ def as_text(found: Iterable[Judged]) -> Iterator[str]:
         arrival_s = one.audit.arrival_time_s
         arrival = "never arrives" if math.isnan(arrival_s) else f"arrives at {arrival_s:.3f} s"
         clearance = f"clearance {1000.0 * one.audit.min_clearance_m:.2f} mm"
-        yield f"{one.trajectory.scenario.id} {one.trajectory.planner}: {verdicts}; {arrival}; {clearance}"
+        touch = _touch(one.audit.contact)
+        yield f"{one.trajectory.scenario.id} {one.trajectory.planner}: {verdicts}; {arrival}; {clearance}{touch}"
 
 
 def as_csv(found: Iterable[Judged]) -> Iterator[str]:
@@ -64,12 +68,19 @@ def _row(one: Judged) -> dict[str, Any]:
         "arrival_time_s": one.audit.arrival_time_s,
         "min_clearance_m": one.audit.min_clearance_m,
         "end_time_s": one.audit.end_time_s,
+        **contact_columns(one.audit.contact),
     }
     for name, verdict in verdicts.items():
         values[f"success_{name}"] = verdict.success
         values[f"violation_{name}_time_s"] = verdict.violation_time_s
         values[f"violation_{name}_kind"] = str(verdict.violation_kind) or None
     return {name: None if values[name] != values[name] else values[name] for name in COLUMNS}
+
+
+def _touch(contact: Contact | None) -> str:
+    if contact is None:
+        return ""
+    return f"; section {contact.section} touches obstacle {contact.obstacle} first, while {contact.how}"
 
 
 def _csv_line(cells: Iterable[object]) -> str:

@@ -40,6 +40,32 @@ class Verdict(NamedTuple):
     """One of ``Kind``; empty when there is none."""
 
 
+class Contact(NamedTuple):
+    """The first touch of arm and obstacles, at any instant."""
+
+    time_s: float
+    obstacle: int
+    """Which of the scenario's obstacles, counted from 1."""
+    section: int
+    """Which section of the arm, counted from 1 at the base."""
+    is_moving: bool
+    """Whether the arm moved on the way there; false where it held still and the obstacle came."""
+
+    @property
+    def how(self) -> str:
+        """``moving`` or ``holding``."""
+        return "moving" if self.is_moving else "holding"
+
+
+def contact_columns(contact: Contact | None) -> dict[str, int | str | None]:
+    """A contact in the columns of a row; None without one."""
+    return {
+        "contact_obstacle": contact and contact.obstacle,
+        "contact_section": contact and contact.section,
+        "contact_while": contact and contact.how,
+    }
+
+
 class Audit(NamedTuple):
     """The three verdicts, each stricter than the one before, and what else was measured on the way."""
 
@@ -55,3 +81,5 @@ class Audit(NamedTuple):
     """Smallest clearance until ``end_time_s``, contacts included [m]; inf without obstacles (docs/audit.md)."""
     end_time_s: float
     """Where the audit ended: at arrival, at the time limit or at the last timed state that can be [s]."""
+    contact: Contact | None = None
+    """What touched first; None where nothing did."""

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterator, Sequence
 
-from suite.backends.job import Failure, Job, Part
+from planners.failure import Failure
+from suite.backends.job import Job, Part
 from suite.trial.task import TrialResult, TrialTask, failed_trial
 
 TRIES = 3
@@ -110,7 +111,7 @@ class Agenda:
         return self._failures.get(None) or self._failures.get(task.spec.label)
 
     def _fail(self, task: TrialTask, failure: Failure) -> None:
-        self.finish(task, failed_trial(task, *failure, 0.0))
+        self.finish(task, failed_trial(task, failure, 0.0))
 
     def _settle(self, part: Part) -> None:
         """Let the tasks that wait for ``part`` go on, before all others."""

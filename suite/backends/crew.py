@@ -10,8 +10,9 @@ from collections.abc import Generator, Sequence
 from dataclasses import replace
 from multiprocessing.connection import wait
 
+from planners.failure import Failure
 from suite.backends.agenda import Agenda
-from suite.backends.job import Failure, Job, OnWarmUp, Part
+from suite.backends.job import Job, OnWarmUp, Part
 from suite.backends.local import in_warm_up, run_task, warm_up
 from suite.backends.process import Dead, Late, WorkerProcess
 from suite.backends.worker import Unreadable
@@ -111,7 +112,7 @@ class Crew:
             self._settle_part(worker, worker.part, answer)
         elif worker.task is not None:
             if not isinstance(answer, TrialResult):
-                answer = failed_trial(worker.task, *_failure(answer), spent_s)
+                answer = failed_trial(worker.task, _failure(answer), spent_s)
             self._agenda.finish(worker.task, answer)
             worker.task = None
         elif answer is None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Generator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
     from suite.trial.task import TrialResult, TrialTask
@@ -27,13 +27,6 @@ class Part:
     """Label of the planner whose trials alone need it and fail with it; None for what every trial needs."""
     is_shared: bool = True
     """Whether every process needs it before its first trial, else only the first to compile what other parts load."""
-
-
-class Failure(NamedTuple):
-    """Why trials cannot be run."""
-
-    outcome: str
-    message: str
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,8 @@ import gc
 import time
 from collections.abc import Generator, Sequence
 
-from suite.backends.job import Failure, Job, OnWarmUp, Part
+from planners.failure import Failure, failure_of
+from suite.backends.job import Job, OnWarmUp, Part
 from suite.trial.task import TrialResult, TrialTask, failed_trial
 
 
@@ -28,7 +29,7 @@ class InProcess:
                         on_warm_up([part], [p for p in job.parts if p.name not in {part.name, *failures}])
                     failures[part.name] = warm_up(part)
                 if failure := failures[part.name]:
-                    yield task, failed_trial(task, failure.outcome, f"{in_warm_up(part)}: {failure.message}", 0.0)
+                    yield task, failed_trial(task, within(in_warm_up(part), failure), 0.0)
                     break
             else:
                 yield task, run_task(job, task)
@@ -42,7 +43,7 @@ def warm_up(part: Part) -> Failure | None:
     try:
         part.run()
     except (Exception, SystemExit) as error:  # noqa: BLE001  a planner may raise anything
-        return Failure("planner_error", _one_line(error))
+        return failure_of(error)
     finally:
         if collects:
             gc.enable()
@@ -54,23 +55,15 @@ def in_warm_up(part: Part) -> str:
     return "in warm-up" if part.planner else f"in warm-up, {part.name}"
 
 
+def within(where: str, failure: Failure) -> Failure:
+    """The same, its message saying where."""
+    return failure._replace(message=f"{where}: {failure.message}")
+
+
 def run_task(job: Job, task: TrialTask) -> TrialResult:
-    """Run ``task`` in this process; whatever its planner raises becomes a row."""
-    started_s = time.monotonic()
-    try:
-        return _attempt(job, task)
-    except SystemExit as error:  # of the planner, not of the run
-        return failed_trial(task, "planner_error", _one_line(error), time.monotonic() - started_s)
-
-
-def _attempt(job: Job, task: TrialTask) -> TrialResult:
+    """Run ``task`` in this process; whatever its planner raises becomes a row, not the end of the run."""
     started_s = time.monotonic()
     try:
         return job.run(task)
-    except Exception as error:  # noqa: BLE001  a planner may raise anything; it becomes a row, not the end of the run
-        message = f"{type(error).__name__}: {error}".splitlines()[0]
-        return failed_trial(task, "planner_error", message[:300], time.monotonic() - started_s)
-
-
-def _one_line(error: BaseException) -> str:
-    return f"{type(error).__name__}: {error}".splitlines()[0][:300]
+    except (Exception, SystemExit) as error:  # noqa: BLE001  a planner may raise anything
+        return failed_trial(task, failure_of(error), time.monotonic() - started_s)

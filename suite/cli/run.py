@@ -19,6 +19,7 @@ from suite.cli.options import (
     experiment_of,
     say,
     split,
+    usage,
     whole_numbers,
     within,
 )
@@ -52,10 +53,15 @@ def run(
     hang_limit_s: Annotated[float, typer.Option(help="A trial that takes longer is killed.")] = 300.0,
     out: Annotated[Path | None, typer.Option(help="Folder of the run. [default: results/NAME]")] = None,
     fresh: Annotated[bool, typer.Option("--fresh", help="Start over what the folder holds.")] = False,
+    keep_stale: Annotated[
+        bool, typer.Option("--keep-stale", help="Use rows there that other code has made, as they are.")
+    ] = False,
 ) -> None:
-    """Run every planner on the same scenarios and compare them; a stopped run goes on where it was."""
+    """Run every planner on the same scenarios and compare them; what a run in the folder has already is kept."""
     n_workers = within("--workers", cores() if workers is None else workers, 1, 1024)
     within("--hang-limit-s", hang_limit_s, 1, 1e6)
+    if fresh and keep_stale:
+        raise usage("--keep-stale: found beside --fresh, allowed one of them")
     with Processes(n_workers) as processes:  # the first is on its way while this process imports what follows
         from suite.runner import RunInterrupted, run_experiment
 
@@ -75,7 +81,9 @@ def run(
         experiment = experiment_of(preset, {name: value for name, value in fields.items() if value is not None})
         folder = out or Path("results") / experiment.name
         try:
-            summary = run_experiment(experiment, folder, workers=processes, hang_limit_s=hang_limit_s, fresh=fresh)
+            summary = run_experiment(
+                experiment, folder, workers=processes, hang_limit_s=hang_limit_s, fresh=fresh, keep_stale=keep_stale
+            )
         except RunInterrupted as stop:
             say(f"stopped: {stop} in {folder}; the same command goes on from there")
             raise typer.Exit(EXIT_INTERRUPTED) from None

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from suite.cli.options import EXIT_NOTHING, Run, say
+from suite.cli.options import EXIT_NOTHING, Run, say, usage
 
 
 def table(
@@ -27,20 +27,28 @@ def table(
     from suite.compare.published import beside, published_file, read_published
     from suite.compare.tables import summarize
     from suite.show import text
+    from suite.show.conditions import sentence
     from suite.show.terminal import print_summary
-    from suite.store.run_folder import planner_order, read_trials
+    from suite.store.run_folder import planner_order, present_codes, read_manifest, read_table, read_trials
 
     trials = read_trials(run)
-    if trials.empty:
+    if trials is not None and trials.empty:
         say(f"{run}: no trial has finished yet")
         raise typer.Exit(EXIT_NOTHING)
-    summary = summarize(trials, planner_order(run))
+    if trials is None and reference is not None:
+        raise usage(f"--reference: found no trials in {run}, allowed where they were kept")
+    if trials is None:
+        summary = read_table(run)
+    else:
+        summary = summarize(trials, planner_order(run), present_codes(read_manifest(run)))
     if against is not None:
         summary = beside(summary, read_published(published_file(against)))
-    pairs = None if reference is None else compare_in_pairs(trials, reference, verdict)
+    pairs = None if trials is None or reference is None else compare_in_pairs(trials, reference, verdict)
     if format == "terminal":
         print_summary(summary)
     else:
+        if format == "markdown" and (said := sentence(summary)):
+            print(f"{said}\n")
         print(text.render(summary, format), end="")
     if pairs is not None:
         print()

@@ -1,7 +1,8 @@
-"""The comparison: trials summed up per number of obstacles and planner.
+"""The comparison: trials summed up per number of obstacles, conditions and planner.
 
 Failures stay in: success rates and planning times are over all trials. How long, how far and how smooth a motion was
 can only be said of motions that reached the goal; those columns are medians over them, and their number is a column.
+Trials under unlike conditions are never summed up together.
 
 A bound (a planner that knows the true motion) shows what is possible. It stands below the others, and every success is
 also given as a share of its own, over the scenarios that both were tried on.
@@ -9,7 +10,7 @@ also given as a share of its own, over the scenarios that both were tried on.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import pandas as pd
@@ -17,34 +18,52 @@ import pandas as pd
 from planners import is_bound
 from suite.auditor.verdicts import VERDICTS
 from suite.compare.statistics import wilson_interval
+from suite.store.frames import TABLE_TYPES
+from suite.trial.columns import OWN, WORLD
+from suite.trial.task import Code
 
 ERRORS = ("planner_error", "planner_hung", "worker_lost", "invalid_scenario")
 """Outcomes that say something about the software rather than about the method."""
 
+WORLDS = ["family", "n_obstacles", *(column.name for column in WORLD)]
+"""Planners are only compared where all of these are the same."""
 
-def summarize(trials: pd.DataFrame, planners: Sequence[str] = ()) -> pd.DataFrame:
-    """One row per family, number of obstacles and planner.
+ENTRANT = ["planner", *(column.name for column in OWN)]
+"""What one row of a table is about, in its world."""
+
+
+def summarize(
+    trials: pd.DataFrame, planners: Sequence[str] = (), present: Mapping[str, Code] | None = None
+) -> pd.DataFrame:
+    """One row per family, number of obstacles, conditions and planner.
 
     Args:
         trials: Frame of trial rows.
         planners: Labels in the order in which they are to appear; others follow by name.
+        present: The code that would run each planner now; rows that other code has made are counted as stale.
     """
     order = {label: position for position, label in enumerate(planners)}
     rows: list[dict[str, Any]] = []
-    for (family, n_obstacles), among in trials.groupby(["family", "n_obstacles"], sort=False):
-        bounds = among[among["planner"].map(is_bound)]
-        rows += [
-            {"family": family, "n_obstacles": n_obstacles, "planner": label, **_summary(group, bounds)}
-            for label, group in among.groupby("planner", sort=False)
-        ]
-    position = [order.get(str(row["planner"]), len(order)) for row in rows]
-    by = ["family", "n_obstacles", "is_bound", "position", "planner"]
-    return pd.DataFrame(rows).assign(position=position).sort_values(by, ignore_index=True).drop(columns="position")
+    for world, among in trials.groupby(WORLDS, sort=False, dropna=False):
+        bounds = among[are_bounds(among)]
+        for entrant, group in among.groupby(ENTRANT, sort=False, dropna=False):
+            named = dict(zip(WORLDS + ENTRANT, (*world, *entrant), strict=True))
+            rows.append(named | _summary(group, bounds) | {"stale": _stale(group, present or {})})
+    summary = pd.DataFrame(rows)[list(TABLE_TYPES)].astype(TABLE_TYPES)
+    position = summary["planner"].map(lambda label: order.get(label, len(order)))
+    by = [*WORLDS, "is_bound", "position", *ENTRANT]
+    return summary.assign(position=position).sort_values(by, ignore_index=True).drop(columns="position")
+
+
+def are_bounds(trials: pd.DataFrame) -> pd.Series[bool]:
+    """Which trials are of bounds; the planner's name says so for rows from before that was noted."""
+    by_name = trials["planner"].map(is_bound).astype("boolean")
+    return trials["is_bound"].astype("boolean").fillna(by_name).astype(bool)
 
 
 def _summary(group: pd.DataFrame, bounds: pd.DataFrame) -> dict[str, object]:
     reached = group[group["outcome"] == "reached"]
-    summary: dict[str, object] = {"is_bound": is_bound(group["planner"].iloc[0]), "trials": len(group)}
+    summary: dict[str, object] = {"is_bound": are_bounds(group).iloc[0], "trials": len(group)}
     for verdict in VERDICTS:
         summary |= _success(group[f"success_{verdict}"], f"success_{verdict}")
     for verdict in VERDICTS:
@@ -61,6 +80,13 @@ def _summary(group: pd.DataFrame, bounds: pd.DataFrame) -> dict[str, object]:
     }
 
 
+def _stale(group: pd.DataFrame, present: Mapping[str, Code]) -> int:
+    code = present.get(group["planner"].iloc[0])
+    if code is None:
+        return 0
+    return int(((group["house_code"] != code.house) | (group["planner_code"] != code.planner)).sum())
+
+
 def _share(group: pd.DataFrame, bounds: pd.DataFrame, success: str) -> float:
     """Successes in percent of those shown to be possible; NaN for bounds and where none was shown.
 
@@ -69,7 +95,7 @@ def _share(group: pd.DataFrame, bounds: pd.DataFrame, success: str) -> float:
     possible = bounds.dropna(subset=[success]).groupby("scenario_hash")[success].any()
     common = group[group["scenario_hash"].isin(possible.index)]
     shown = int(possible[possible.index.isin(common["scenario_hash"])].sum())
-    if is_bound(group["planner"].iloc[0]) or not shown:
+    if are_bounds(group).iloc[0] or not shown:
         return float("nan")
     return 100 * int(common[success].sum()) / shown
 

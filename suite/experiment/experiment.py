@@ -17,7 +17,8 @@ from scenarios import ContinuumArm, Scenario, generate, load_scenarios
 from scenarios.families import parse_family
 from scenarios.spec import known_name
 from suite.errors import SuiteError, one_line
-from suite.trial.task import TrialTask
+from suite.experiment.code import house, house_code
+from suite.trial.task import Code, TrialTask
 
 MAX_TRIALS_IN_ALL = 1_000_000
 
@@ -105,17 +106,33 @@ class Experiment(BaseModel):
 
     def tasks(self, scenarios: Iterable[Scenario]) -> Iterator[TrialTask]:
         """Every planner on every scenario: scenario by scenario, so that an unfinished run compares like with like."""
-        specs = self.specs()
+        codes = self.codes()
+        lineup = [(spec, codes[spec.label]) for spec in self.specs()]
         for scenario in scenarios:
-            for spec in specs:
-                predictor = spec.predictor_for(self.predictor)
-                yield TrialTask(scenario, spec, predictor, self.limits, self.seed, self.noise_mm, self.dropout)
+            for spec, code in lineup:
+                yield TrialTask(
+                    scenario,
+                    spec,
+                    spec.predictor_for(self.predictor),
+                    self.limits,
+                    self.seed,
+                    self.noise_mm,
+                    self.dropout,
+                    spec.prediction_margin,
+                    code,
+                )
+
+    def codes(self) -> dict[str, Code]:
+        """Which code runs each planner, by label."""
+        ours = house_code(house())
+        return {spec.label: Code(ours, spec.code or ours) for spec in self.specs()}
 
     @property
     def name(self) -> str:
-        """A folder name: where the scenarios come from, and a hash of everything."""
+        """A folder name that more planners, scenarios or numbers of obstacles leave as it is: the run there grows."""
         source = Path(self.scenario_files[0]).stem if self.scenario_files else self.family.partition("[")[0]
-        digest = hashlib.sha256(self.model_dump_json().encode()).hexdigest()
+        conditions = self.model_dump_json(exclude={"planners", "obstacles", "trials"})
+        digest = hashlib.sha256(conditions.encode()).hexdigest()
         return f"{source}-{digest[:8]}"
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TextIO
 
@@ -17,10 +17,11 @@ from suite.files import replacing, write_text
 from suite.show.text import as_csv, as_markdown_page
 from suite.store.frames import FLOAT_FORMAT, trials_csv, trials_frame
 from suite.store.journal import Executed, Journal
+from suite.trial.task import Code
 
 
 def write_derived(
-    folder: Path, journal: Journal, scenarios: Sequence[Scenario], planners: Sequence[str]
+    folder: Path, journal: Journal, scenarios: Sequence[Scenario], present: Mapping[str, Code]
 ) -> pd.DataFrame:
     """Write trials, tables, scenarios and trajectories.
 
@@ -28,16 +29,16 @@ def write_derived(
         folder: The run's folder.
         journal: The run's journal.
         scenarios: The run's scenarios.
-        planners: Labels in the order in which the tables show them.
+        present: The code of every planner by label, in the order in which the tables show them.
 
     Returns:
         The summary that stands in ``table.csv``.
     """
     trials = trials_frame(journal.rows())
-    summary = summarize(trials, planners)
+    summary = summarize(trials, list(present), present)
     write_text(folder / "trials.csv", trials_csv(trials))
     write_text(folder / "table.csv", as_csv(summary))
-    write_text(folder / "table.md", as_markdown_page(folder.name, trials, summary))
+    write_text(folder / "table.md", as_markdown_page(folder.name, summary))
     with replacing(folder / "scenarios.jsonl") as handle:
         handle.writelines(f"{scenario.model_dump_json()}\n" for scenario in scenarios)
     with replacing(folder / "trajectories.csv") as handle:

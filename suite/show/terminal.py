@@ -10,6 +10,8 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from suite.compare.tables import WORLDS
+from suite.show.conditions import sentence
 from suite.show.text import cells
 
 WIDE = 240
@@ -17,16 +19,18 @@ WIDE = 240
 
 
 def print_summary(summary: pd.DataFrame) -> None:
-    """Print the summary to stdout, with a gap between numbers of obstacles."""
+    """Print conditions and summary to stdout, with a gap between numbers of obstacles."""
     console = Console()
     if not console.is_terminal:
         console = Console(width=WIDE)
+    if said := sentence(summary):
+        console.print(f"{said}\n", markup=False, highlight=False)
     titles, rows = cells(summary)
     shown = _fitting([titles, *rows], console.width)
     table = Table(box=box.SIMPLE_HEAD, show_edge=False)
     for title in titles[:shown]:
         table.add_column(title, justify="left" if title in {"planner", "family"} else "right", no_wrap=True)
-    groups = list(zip(summary["family"], summary["n_obstacles"], strict=True))
+    groups = summary.groupby(WORLDS, sort=False, dropna=False).ngroup().tolist()
     for row, group, following in zip(rows, groups, [*groups[1:], groups[-1]], strict=True):
         # A spec's brackets would be read as markup.
         table.add_row(*map(escape, row[:shown]), end_section=group != following)

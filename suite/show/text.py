@@ -9,7 +9,11 @@ import pandas as pd
 from tabulate import tabulate
 
 from suite.auditor.verdicts import VERDICTS
+from suite.show.conditions import column, sentence, varying
 from suite.store.frames import FLOAT_FORMAT
+from suite.trial.columns import WORLD
+
+WORLD_NAMES = {condition.name for condition in WORLD}
 
 Format = Literal["markdown", "csv", "latex"]
 
@@ -19,7 +23,7 @@ Success in percent of all trials with its 95 % Wilson interval; each verdict is 
 knows the true motion and is not compared; "of bound" gives successes in percent of its, one verdict after another.
 Planning time is the sum over a trial's solves: mean / median over all trials. Solve is the median of the trials' median
 solves. Arrival, tip path and smoothness S are medians over the trials that reached the goal. Errors are trials in which
-the planner failed as a program: it raised, crashed or hung."""
+the planner failed as a program: it raised, crashed or hung. Stale trials were run by other code than the present."""
 
 
 class Shown(NamedTuple):
@@ -38,11 +42,15 @@ def as_csv(frame: pd.DataFrame) -> str:
 def shown_columns(summary: pd.DataFrame) -> list[Shown]:
     """The columns that people see of a summary; those that say nothing are left out."""
     published = "published_success_percent" in summary
+    varied = varying(summary)
     columns = [
         Shown("family", lambda row: str(row.family)) if len(set(summary["family"])) > 1 else None,
         Shown("obstacles", lambda row: str(row.n_obstacles)),
+        *(Shown(*column(summary, name)) for name in varied if name in WORLD_NAMES),
         Shown("planner", lambda row: f"{row.planner} (bound)" if row.is_bound else str(row.planner)),
+        *(Shown(*column(summary, name)) for name in varied if name not in WORLD_NAMES),
         Shown("n", lambda row: str(row.trials)),
+        Shown("stale", lambda row: str(row.stale)) if summary["stale"].any() else None,
         Shown("errors", lambda row: str(row.errors)) if summary["errors"].any() else None,
         Shown("published %", lambda row: _number(row.published_success_percent)) if published else None,
         *(Shown(f"{verdict.replace('_', ' ')} %", _success(verdict)) for verdict in VERDICTS),
@@ -76,33 +84,23 @@ def render_pairs(pairs: pd.DataFrame, format: Format) -> str:
     """A comparison in pairs in one of the formats for files."""
     if format == "csv":
         return as_csv(pairs)
+    conditions = [Shown(*column(pairs, name)) for name in varying(pairs)]
     counts = ["scenarios", "only_planner", "only_reference"]
     rows = [
-        [str(pair["n_obstacles"]), pair["planner"], pair["reference"]]
-        + [str(pair[count]) for count in counts]
-        + [f"{pair[p]:.2g}" for p in ("p_mcnemar", "p_holm")]
-        for pair in pairs.to_dict("records")
+        [str(pair.n_obstacles), *(condition.cell(pair) for condition in conditions)]
+        + [str(pair.planner), str(pair.reference)]
+        + [str(getattr(pair, count)) for count in counts]
+        + [f"{getattr(pair, p):.2g}" for p in ("p_mcnemar", "p_holm")]
+        for pair in pairs.itertuples(index=False)
     ]
-    titles = ["obstacles", "planner", "reference", "scenarios", "only planner", "only reference", "p", "p, Holm"]
+    titles = ["obstacles", *(condition.title for condition in conditions), "planner", "reference"]
+    titles += ["scenarios", "only planner", "only reference", "p", "p, Holm"]
     return _tabulated(titles, rows, format)
 
 
-def conditions(trials: pd.DataFrame) -> str:
-    """Under which conditions the trials were run, in one sentence."""
-
-    def values(name: str) -> str:
-        return ", ".join(f"{value:g}" if isinstance(value, float) else str(value) for value in trials[name].unique())
-
-    limits = ", ".join("on" if limits else "off" for limits in trials["limits"].unique())
-    return (
-        f"Predictor {values('predictor')}; motion limits {limits}; observation noise {values('noise_mm')} mm,"
-        f" dropout {values('dropout')}; seed {values('experiment_seed')}."
-    )
-
-
-def as_markdown_page(title: str, trials: pd.DataFrame, summary: pd.DataFrame) -> str:
+def as_markdown_page(title: str, summary: pd.DataFrame) -> str:
     """The text of ``table.md``."""
-    return f"# {title}\n\n{conditions(trials)}\n\n{render(summary, 'markdown')}\n{NOTES}\n"
+    return "\n\n".join([f"# {title}", *filter(None, [sentence(summary)]), f"{render(summary, 'markdown')}\n{NOTES}\n"])
 
 
 def _tabulated(titles: list[str], rows: list[list[str]], format: Format) -> str:

@@ -1,18 +1,43 @@
-"""Trial rows as a pandas frame and as ``trials.csv``."""
+"""Trial rows as a pandas frame and as ``trials.csv``; tables as they were written."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import pandas as pd
 
+from planners import is_bound
+from suite.auditor.verdicts import VERDICTS
 from suite.errors import SuiteError
-from suite.trial.columns import COLUMN_NAMES, COLUMNS, Row
+from suite.store.schema import old_margin
+from suite.trial.columns import COLUMN_NAMES, COLUMNS, CONDITIONS, Column, Row
 
-SORTED_BY = ["family", "n_obstacles", "scenario_id", "planner"]
+SORTED_BY = ["family", "n_obstacles", "scenario_id", "planner", *(column.name for column in CONDITIONS)]
 """The order of rows in files, which does not depend on the order in which trials finished."""
+
+_NEW_IN_TABLES = {column.name: column.dtype for column in CONDITIONS} | {"stale": "int64"}
+
+TABLE_TYPES: dict[str, str] = {
+    "family": "string",
+    "n_obstacles": "int64",
+    "planner": "string",
+    **_NEW_IN_TABLES,
+    "is_bound": "bool",
+    "trials": "int64",
+    **{f"success_{verdict}_{part}": "float64" for verdict in VERDICTS for part in ("percent", "low", "high")},
+    **{f"success_{verdict}_of_bound_percent": "float64" for verdict in VERDICTS},
+    "planning_time_mean_s": "float64",
+    "planning_time_median_s": "float64",
+    "solve_median_s": "float64",
+    "reached": "int64",
+    "arrival_median_s": "float64",
+    "tip_path_length_median_m": "float64",
+    "smoothness_paper_median_rad": "float64",
+    "errors": "int64",
+}
+"""Columns of ``table.csv`` and their types."""
 
 FLOAT_FORMAT = "%.9g"
 """How every number is written, so that equal rows give equal bytes."""
@@ -44,17 +69,59 @@ def trials_csv(trials: pd.DataFrame) -> str:
 
 
 def read_trials_csv(file: Path) -> pd.DataFrame:
-    """Read what ``trials_csv`` wrote.
+    """Read what ``trials_csv`` wrote, now or before rows said as much as they do.
 
     Raises:
         SuiteError: The file cannot be read, or a column is missing or holds something else than it should.
     """
-    dtypes = {column.name: column.dtype for column in COLUMNS}
-    try:
-        frame = pd.read_csv(file, dtype=dtypes, keep_default_na=False, na_values=[""])
-    except (OSError, ValueError) as error:
-        raise SuiteError(f"{file}: cannot be read: {error}") from None
-    missing = [name for name in COLUMN_NAMES if name not in frame.columns]
+    frame = _read_csv(file, {column.name: column.dtype for column in COLUMNS})
+    is_old = not any(column.since > 1 and column.name in frame for column in COLUMNS)
+    missing = [column.name for column in COLUMNS if column.name not in frame and not (is_old and column.since > 1)]
     if missing:
         raise SuiteError(f"{file}: found no column {missing[0]}, a table of trials has one")
+    if is_old:
+        frame = _with_unknown(frame, [column for column in COLUMNS if column.since > 1])
+        planner = frame["planner"].fillna("")
+        frame = frame.assign(
+            prediction_margin=planner.map(old_margin).astype("float64"),
+            is_bound=planner.map(is_bound).astype("boolean"),
+        )
     return frame[list(COLUMN_NAMES)]
+
+
+def read_table_csv(file: Path) -> pd.DataFrame:
+    """Read a summary as it was written, now or before tables said under which conditions.
+
+    Raises:
+        SuiteError: The file cannot be read, or is no summary.
+    """
+    frame = _read_csv(file, TABLE_TYPES)
+    missing = [name for name in TABLE_TYPES if name not in frame and name not in _NEW_IN_TABLES]
+    if missing:
+        raise SuiteError(f"{file}: found no column {missing[0]}, a table has one")
+    return _with_unknown(frame if "stale" in frame else frame.assign(stale=0), CONDITIONS)
+
+
+def _with_unknown(frame: pd.DataFrame, columns: Iterable[Column]) -> pd.DataFrame:
+    """Add, empty, those of the columns that are not there."""
+    empty = [None] * len(frame)
+    return frame.assign(**{c.name: pd.Series(empty, frame.index, c.dtype) for c in columns if c.name not in frame})
+
+
+def _read_csv(file: Path, types: Mapping[str, str]) -> pd.DataFrame:
+    try:
+        return pd.read_csv(file, dtype=dict(types), keep_default_na=False, na_values=[""])
+    except (OSError, ValueError, TypeError) as error:
+        raise SuiteError(f"{file}: cannot be read: {error}"[:300]) from None
+
+
+def refuse_gaps(trials: pd.DataFrame, file: Path) -> pd.DataFrame:
+    """Return ``trials`` if every one says which it is; a file may have been written by anyone.
+
+    Raises:
+        SuiteError: Scenario, planner or outcome is missing somewhere.
+    """
+    for name in ("scenario_id", "scenario_hash", "family", "n_obstacles", "planner", "outcome"):
+        if trials[name].isna().any():
+            raise SuiteError(f"{file}: found a trial without {name}, allowed: every trial has one")
+    return trials

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import io
-import sqlite3
-from collections.abc import Iterator
+import json
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from types import TracebackType
 from typing import NamedTuple, Self
@@ -12,10 +12,12 @@ from typing import NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from suite.errors import SuiteError
+from suite.experiment.code import House
+from suite.store.schema import open_to_read, open_to_write, remember_house, transaction
 from suite.trial.columns import COLUMN_NAMES, COLUMNS, Row, complete_row
-from suite.trial.task import TrialResult, TrialTask
+from suite.trial.task import Code, TrialResult, TrialTask
 
-_SQL_TYPES = {"string": "TEXT", "boolean": "INTEGER", "Int64": "INTEGER", "float64": "REAL"}
 _NAMES = ", ".join(f'"{name}"' for name in COLUMN_NAMES)
 
 
@@ -31,17 +33,20 @@ class Executed(NamedTuple):
 
 
 class Journal:
-    """The finished trials of a run, by (scenario hash, planner label); use it as a context manager."""
+    """Every trial that ever finished in a run, and which of them its latest command asks for; a context manager.
 
-    def __init__(self, file: Path) -> None:
-        self._db = sqlite3.connect(file, isolation_level=None)  # every statement is a transaction of its own
-        self._db.execute("PRAGMA journal_mode = WAL")
-        self._db.execute("PRAGMA synchronous = NORMAL")
-        columns = ", ".join(f'"{column.name}" {_SQL_TYPES[column.dtype]}' for column in COLUMNS)
-        self._db.execute(
-            f"CREATE TABLE IF NOT EXISTS trials ({columns}, executed BLOB NOT NULL,"
-            " PRIMARY KEY (scenario_hash, planner))"
-        )
+    No row is ever replaced or deleted: run again by other code, a trial has another row.
+    """
+
+    def __init__(self, file: Path, *, read_only: bool = False, old_house: House | None = None) -> None:
+        """Open, or make, the journal in ``file``; ``old_house`` made the rows of one that does not say it itself.
+
+        Raises:
+            SuiteError: The file is no journal, or of a newer version.
+            sqlite3.Error: It cannot be read or written.
+        """
+        self._file = file
+        self._db = (open_to_read if read_only else open_to_write)(file, old_house)
 
     def __enter__(self) -> Self:
         return self
@@ -51,30 +56,74 @@ class Journal:
     ) -> None:
         self._db.close()
 
-    def finished(self) -> set[tuple[str, str]]:
-        """Keys of the trials that need not run again."""
-        return set(self._db.execute("SELECT scenario_hash, planner FROM trials"))
+    def made(self) -> dict[str, list[Code]]:
+        """Which code has made rows of which trial, by the trial's key, the latest last."""
+        made: dict[str, list[Code]] = {}
+        for key, *code in self._db.execute("SELECT key, house_code, planner_code FROM trials ORDER BY number"):
+            made.setdefault(key, []).append(Code(*code))
+        return made
+
+    def houses(self) -> dict[str, House]:
+        """What stands behind the hashes of houses."""
+        return {code: json.loads(text) for code, text in self._db.execute("SELECT * FROM houses")}
+
+    def ask(self, chosen: Mapping[str, Code], house: House) -> None:
+        """Note what the present command asks for: keys of trials, and the code whose rows stand for them."""
+        rows = [(position, key, *code) for position, (key, code) in enumerate(chosen.items())]
+        with transaction(self._db):
+            remember_house(self._db, house)
+            self._db.execute("DELETE FROM asked")
+            self._db.executemany("INSERT INTO asked VALUES (?, ?, ?, ?)", rows)
+
+    def complete(self, tasks: Iterable[TrialTask]) -> None:
+        """Fill in what rows of the first version do not say of their scenarios, as far as these are known by now."""
+        lacking = {key for (key,) in self._db.execute("SELECT key FROM trials WHERE arm IS NULL")}
+        known = [(task.identity["arm"], task.identity["family_parameters"], task.key) for task in tasks if lacking]
+        with transaction(self._db):
+            self._db.executemany(
+                "UPDATE trials SET arm = ?, family_parameters = ? WHERE key = ? AND arm IS NULL",
+                [values for values in known if values[-1] in lacking],
+            )
+
+    def finished(self) -> set[str]:
+        """Keys of the trials that are asked for and need not run again."""
+        return {key for (key,) in self._db.execute("SELECT key FROM shown")}
 
     def add(self, task: TrialTask, result: TrialResult) -> None:
         """Store one finished trial."""
-        assert (result.row["scenario_hash"], result.row["planner"]) == task.key
-        marks = ", ".join("?" * (len(COLUMNS) + 1))
-        values = [*complete_row(result.row).values(), _to_bytes(result)]
-        self._db.execute(f"INSERT INTO trials ({_NAMES}, executed) VALUES ({marks})", values)
+        row = complete_row(result.row)
+        assert all(row[name] == value for name, value in task.identity.items())
+        marks = ", ".join("?" * (len(COLUMNS) + 3))
+        values = [task.key, *row.values(), _to_bytes(result), result.traceback]
+        self._db.execute(f"INSERT INTO trials (key, {_NAMES}, executed, traceback) VALUES ({marks})", values)
 
     def rows(self) -> Iterator[Row]:
-        """All rows, in no particular order."""
-        for values in self._db.execute(f"SELECT {_NAMES} FROM trials"):
-            yield complete_row(dict(zip(COLUMN_NAMES, values, strict=True)))
+        """All rows that are asked for, in no particular order.
+
+        Raises:
+            SuiteError: A value is not of its column's type.
+        """
+        for values in self._db.execute(f"SELECT {_NAMES} FROM shown"):
+            try:
+                yield complete_row(dict(zip(COLUMN_NAMES, values, strict=True)))
+            except (ValueError, TypeError) as error:
+                raise SuiteError(f"{self._file}: found a row with a value that fits no trial: {error}"[:300]) from None
 
     def executed(self) -> Iterator[Executed]:
-        """What was executed, trial by trial, sorted as in the tables."""
+        """What was executed in the trials that are asked for, sorted as in the tables.
+
+        Raises:
+            SuiteError: What is stored is no trajectory.
+        """
         selected = self._db.execute(
-            "SELECT scenario_id, planner, executed FROM trials ORDER BY family, n_obstacles, scenario_id, planner"
+            "SELECT scenario_id, planner, executed FROM shown ORDER BY family, n_obstacles, scenario_id, planner, key"
         )
         for scenario_id, planner, blob in selected:
-            timed = np.load(io.BytesIO(blob), allow_pickle=False)
-            yield Executed(scenario_id, planner, timed[:, 0], timed[:, 1:])
+            try:
+                timed = np.load(io.BytesIO(blob), allow_pickle=False)
+                yield Executed(scenario_id, planner, timed[:, 0], timed[:, 1:])
+            except (ValueError, TypeError, EOFError, IndexError):
+                raise SuiteError(f"{self._file}: {scenario_id} {planner}: found no trajectory in it") from None
 
 
 def _to_bytes(result: TrialResult) -> bytes:

@@ -6,15 +6,20 @@ import fcntl
 import json
 import os
 import sqlite3
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from suite.errors import SuiteError
-from suite.experiment.manifest import Manifest, differences
+from suite.experiment.code import House, changes
+from suite.experiment.manifest import Manifest
 from suite.files import write_text
+from suite.store.frames import read_table_csv, read_trials_csv, refuse_gaps, trials_frame
+from suite.store.growth import Standing, settle
 from suite.store.journal import Journal
+from suite.store.schema import is_journal
+from suite.trial.task import Code, TrialTask
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -22,7 +27,8 @@ if TYPE_CHECKING:
 MANIFEST = "manifest.json"
 JOURNAL = "run.db"
 TRIALS = "trials.csv"
-DERIVED = (TRIALS, "table.csv", "table.md", "scenarios.jsonl", "trajectories.csv")
+TABLE = "table.csv"
+DERIVED = (TRIALS, TABLE, "table.md", "scenarios.jsonl", "trajectories.csv")
 
 
 def read_manifest(folder: Path) -> Manifest | None:
@@ -46,60 +52,120 @@ def read_manifest(folder: Path) -> Manifest | None:
 def planner_order(folder: Path) -> tuple[str, ...]:
     """Planner labels in the order in which they were asked for; empty if unknown."""
     manifest = read_manifest(folder)
-    return tuple(manifest["experiment"].get("planners", ())) if manifest else ()
+    return tuple(present_codes(manifest)) or tuple((manifest or {}).get("experiment", {}).get("planners", ()))
 
 
-def read_trials(folder: Path) -> pd.DataFrame:
-    """The trials so far: from the journal, or from ``trials.csv`` where only that was kept.
+def present_codes(manifest: Manifest | None) -> dict[str, Code]:
+    """The code of the latest command by planner; empty for runs from before that was noted."""
+    code = (manifest or {}).get("code")
+    if not (isinstance(code, dict) and isinstance(code.get("planners"), dict)):
+        return {}
+    return {label: Code(str(code.get("house")), str(planner)) for label, planner in code["planners"].items()}
+
+
+def read_trials(folder: Path) -> pd.DataFrame | None:
+    """The trials so far: from the journal, or from ``trials.csv`` where only that was kept; None without either.
 
     Raises:
-        SuiteError: There is neither, or it cannot be read.
+        SuiteError: They cannot be read.
     """
-    from suite.store.frames import read_trials_csv, trials_frame
-
     if (folder / JOURNAL).exists():
         try:
-            with Journal(folder / JOURNAL) as journal:
-                return trials_frame(journal.rows())
-        except sqlite3.Error as error:
-            raise SuiteError(f"{folder / JOURNAL}: cannot be read: {error}") from None
-    if (folder / TRIALS).exists():
-        return read_trials_csv(folder / TRIALS)
-    raise SuiteError(f"{folder}: found neither {JOURNAL} nor {TRIALS}, allowed: the folder of a run")
+            with Journal(folder / JOURNAL, read_only=True, old_house=_old_house(folder)) as journal:
+                return refuse_gaps(trials_frame(journal.rows()), folder / JOURNAL)
+        except (OSError, sqlite3.Error) as error:
+            raise SuiteError(f"{folder / JOURNAL}: cannot be read: {error}"[:300]) from None
+    return refuse_gaps(read_trials_csv(folder / TRIALS), folder / TRIALS) if (folder / TRIALS).exists() else None
+
+
+def read_table(folder: Path) -> pd.DataFrame:
+    """The summary in ``table.csv``, for a run of which no trials were kept.
+
+    Raises:
+        SuiteError: There is none, or it cannot be read.
+    """
+    if not (folder / TABLE).exists():
+        raise SuiteError(f"{folder}: found no {JOURNAL}, {TRIALS} or {TABLE}, allowed: the folder of a run")
+    return read_table_csv(folder / TABLE)
 
 
 @contextmanager
-def open_run(folder: Path, manifest: Manifest, *, fresh: bool) -> Iterator[Journal]:
-    """Start or continue the run that ``manifest`` describes, and keep other processes out of it meanwhile.
+def open_run(
+    folder: Path, manifest: Manifest, tasks: Sequence[TrialTask], *, fresh: bool = False, keep_stale: bool = False
+) -> Iterator[tuple[Journal, Standing]]:
+    """Start or continue a run, and keep other processes out of it meanwhile.
 
     Args:
         folder: Made if need be.
         manifest: What is about to run.
-        fresh: Forget what an earlier run has left there.
+        tasks: Its trials.
+        fresh: Forget what earlier commands have left there.
+        keep_stale: Use rows that other code has made where there are none of the present code.
+
+    Yields:
+        The journal, in which the tasks are asked for, and how far they are.
 
     Raises:
-        SuiteError: The folder holds another run or something that is no run, is in use, or cannot be written.
+        SuiteError: The rows there are of another house, or the folder holds something that is no run, is in use, or
+            cannot be written. Then nothing in it has been changed.
     """
     with ExitStack() as stack:
         try:
             _refuse_strangers(folder)
-            there = None if fresh else read_manifest(folder)
-            if there is not None and (found := differences(there, manifest)):
-                raise SuiteError(
-                    f"{folder}: holds another run ({'; '.join(found[:3])});"
-                    " start it over with --fresh, or choose another folder with --out"
-                )
             folder.mkdir(parents=True, exist_ok=True)
             stack.enter_context(_held(folder))
             if fresh:
-                for name in (MANIFEST, JOURNAL, f"{JOURNAL}-wal", f"{JOURNAL}-shm", *DERIVED):
-                    (folder / name).unlink(missing_ok=True)
-            if there is None:
-                write_text(folder / MANIFEST, json.dumps(manifest, indent=2) + "\n")
-            journal = stack.enter_context(Journal(folder / JOURNAL))
+                _forget(folder, manifest)
+            house = {part: manifest[part] for part in ("sources", "versions")}
+            old_house = _old_house(folder)
+            standing = _standing(folder, old_house, house, tasks, keep_stale=keep_stale)
+            journal = stack.enter_context(Journal(folder / JOURNAL, old_house=old_house))
+            journal.ask(standing.chosen, house)
+            journal.complete(tasks)
+            _write_manifest(folder, manifest)
         except (OSError, sqlite3.Error) as error:
-            raise SuiteError(f"{folder}: cannot be written: {getattr(error, 'strerror', None) or error}") from None
-        yield journal
+            raise SuiteError(
+                f"{folder}: cannot be read or written: {getattr(error, 'strerror', None) or error}"
+            ) from None
+        yield journal, standing
+
+
+def _standing(
+    folder: Path, old_house: House | None, house: House, tasks: Sequence[TrialTask], *, keep_stale: bool
+) -> Standing:
+    """How far the run is; rows of another house are for the user to decide about."""
+    if not (folder / JOURNAL).exists():
+        return settle(tasks, {}, keep_stale=keep_stale)
+    with Journal(folder / JOURNAL, read_only=True, old_house=old_house) as journal:
+        standing = settle(tasks, journal.made(), keep_stale=keep_stale)
+        if standing.other_houses:
+            theirs = journal.houses().get(standing.other_houses.most_common(1)[0][0])
+            what = "; ".join(changes(theirs, house)[:3]) if theirs else "nothing says which"
+            raise SuiteError(
+                f"{folder}: {standing.other_houses.total()} of {len(tasks)} trials were run by another version of the"
+                f" suite ({what}); start over with --fresh, or use them as they are with --keep-stale"
+            )
+    return standing
+
+
+def _old_house(folder: Path) -> House | None:
+    """What made the rows of a run of the first version: its manifest says it, once for all of them."""
+    manifest = read_manifest(folder) or {}
+    sources, versions = manifest.get("sources"), manifest.get("versions")
+    if "schema_version" in manifest or not (isinstance(sources, str) and isinstance(versions, dict)):
+        return None
+    return {"sources": sources, "versions": versions}
+
+
+def _forget(folder: Path, manifest: Manifest) -> None:
+    """Delete what a run has left; the folder is that of a run at any instant, so that this may be cut short."""
+    _write_manifest(folder, manifest)
+    for name in (*DERIVED, JOURNAL, f"{JOURNAL}-wal", f"{JOURNAL}-shm"):
+        (folder / name).unlink(missing_ok=True)
+
+
+def _write_manifest(folder: Path, manifest: Manifest) -> None:
+    write_text(folder / MANIFEST, json.dumps(manifest, indent=2) + "\n")
 
 
 def _refuse_strangers(folder: Path) -> None:
@@ -109,7 +175,7 @@ def _refuse_strangers(folder: Path) -> None:
     if not folder.is_dir():
         raise SuiteError(f"{folder}: found a file, allowed: a folder")
     others = [entry.name for entry in folder.iterdir() if not entry.name.startswith(".")]
-    if others and MANIFEST not in others:
+    if others and MANIFEST not in others and not (JOURNAL in others and is_journal(folder / JOURNAL)):
         raise SuiteError(f"{folder}: found {others[0]} and no {MANIFEST}, allowed: an empty folder or that of a run")
 
 

@@ -7,6 +7,8 @@ empty cell in files.
 
 from __future__ import annotations
 
+import hashlib
+import json
 from collections.abc import Callable, Mapping
 from typing import Any, Literal, NamedTuple
 
@@ -14,6 +16,9 @@ from suite.auditor.verdicts import VERDICTS
 
 DType = Literal["string", "boolean", "Int64", "float64"]
 """Names of the pandas types that can hold a missing value."""
+
+SCHEMA_VERSION = 2
+"""Version of the columns below; what an older version lacks is None when its rows are read."""
 
 OUTCOMES = (
     "reached", "collided", "timeout", "stuck", "planner_error", "planner_hung", "worker_lost", "invalid_scenario",
@@ -30,7 +35,31 @@ class Column(NamedTuple):
     meaning: str
     is_timing: bool = False
     """True for wall-clock readings, the only columns that may differ between two runs of one experiment."""
+    since: int = 1
+    """Version of the columns in which it appeared."""
 
+
+WORLD = (
+    Column("family_parameters", "string", "", "settings in which the family differs from its defaults", since=2),
+    Column("arm", "string", "", "settings in which the arm differs from the default one", since=2),
+    Column("limits", "boolean", "", "whether planners had to keep to the arm's motion limits"),
+    Column("noise_mm", "float64", "mm", "standard deviation of the noise on observed positions"),
+    Column("dropout", "float64", "", "share of observations that were lost"),
+    Column("experiment_seed", "Int64", "", "seed of the experiment"),
+)
+"""Conditions under which every planner of a comparison works."""
+
+OWN = (
+    Column("settings", "string", "", "every setting of the planner, as JSON"),
+    Column("predictor", "string", "", "predictor of the obstacles' motion that the planner had"),
+    Column(
+        "prediction_margin", "float64", "", "standard deviations by which its predicted obstacles were grown", since=2
+    ),
+)
+"""Conditions that may differ from planner to planner."""
+
+CONDITIONS = WORLD + OWN
+"""What keeps rows of one planner apart in every table."""
 
 IDENTITY = (
     Column("scenario_id", "string", "", "name of the scenario"),
@@ -38,13 +67,12 @@ IDENTITY = (
     Column("family", "string", "", "generator family of the scenario"),
     Column("n_obstacles", "Int64", "", "number of moving obstacles"),
     Column("planner", "string", "", "planner as it was asked for"),
-    Column("settings", "string", "", "every setting of the planner, as JSON"),
-    Column("predictor", "string", "", "predictor of the obstacles' motion"),
-    Column("limits", "boolean", "", "whether planners had to keep to the arm's motion limits"),
-    Column("noise_mm", "float64", "mm", "standard deviation of the noise on observed positions"),
-    Column("dropout", "float64", "", "share of observations that were lost"),
-    Column("experiment_seed", "Int64", "", "seed of the experiment"),
+    *OWN,
+    *WORLD,
     Column("trial_seed", "Int64", "", "seed of this trial, derived from experiment seed, scenario and planner"),
+    Column("house_code", "string", "", "hash of the suite's sources and of its libraries' versions", since=2),
+    Column("planner_code", "string", "", "hash of the planner's own code; house_code for the house's", since=2),
+    Column("is_bound", "boolean", "", "whether the planner sees the true future and is no competitor", since=2),
 )
 
 VIOLATIONS = tuple(
@@ -62,6 +90,9 @@ MEASURED = (
     Column("success_swept", "boolean", "", "goal reached with no collision at any instant"),
     Column("success_executable", "boolean", "", "swept, and within the arm's bending rate and tip speed"),
     *VIOLATIONS,
+    Column("contact_obstacle", "Int64", "", "obstacle that was touched first at any instant, counted from 1", since=2),
+    Column("contact_section", "Int64", "", "section that touched it, counted from 1 at the base", since=2),
+    Column("contact_while", "string", "", "whether the arm was moving or holding then", since=2),
     Column("arrival_time_s", "float64", "s", "first timed state with the tip within the goal tolerance"),
     Column("planning_time_s", "float64", "s", "wall time of all solves of the trial", is_timing=True),
     Column("n_solves", "Int64", "", "number of solves"),
@@ -81,7 +112,21 @@ MEASURED = (
 
 COLUMNS: tuple[Column, ...] = IDENTITY + MEASURED
 COLUMN_NAMES = tuple(column.name for column in COLUMNS)
+_DTYPES = {column.name: column.dtype for column in COLUMNS}
 TIMING_NAMES = frozenset(column.name for column in COLUMNS if column.is_timing)
+
+KEY_NAMES = (
+    "scenario_hash",
+    "scenario_id",
+    "planner",
+    "settings",
+    "predictor",
+    "limits",
+    "noise_mm",
+    "dropout",
+    "experiment_seed",
+)
+"""What one trial differs in from another: everything that decides its row, but for the code that makes it."""
 
 Row = dict[str, Any]
 """One trial: a value, or None, for every name in ``COLUMN_NAMES``, in that order."""
@@ -97,6 +142,12 @@ def complete_row(values: Mapping[str, Any]) -> Row:
     if unknown:
         raise KeyError(f"no such column: {', '.join(unknown)}")
     return {column.name: _plain(column.dtype, values.get(column.name)) for column in COLUMNS}
+
+
+def trial_key(row: Mapping[str, Any]) -> str:
+    """32 hexadecimal digits that stand for ``KEY_NAMES`` of a row."""
+    values = [_plain(_DTYPES[name], row[name]) for name in KEY_NAMES]
+    return hashlib.sha256(json.dumps(values).encode()).hexdigest()[:32]
 
 
 def _plain(dtype: DType, value: Any) -> str | bool | int | float | None:

@@ -9,9 +9,10 @@ import time
 
 import numpy as np
 
-from planners import Observation, Plan, Session
+from planners import Failure, Observation, Plan, Session
 from scenarios import start_is_free
 from suite.auditor import Audit, audit, collides
+from suite.auditor.verdicts import contact_columns
 from suite.trial.execution import Execution, PathError, check_path
 from suite.trial.metrics import smoothness_bending_rad, smoothness_paper_rad, tip_path_length_m
 from suite.trial.observation import Observer
@@ -24,11 +25,12 @@ STUCK_S = 10.0
 def run_trial(task: TrialTask) -> TrialResult:
     """Run one planner on one scenario and judge what was executed."""
     started = time.perf_counter()
-    scenario = task.scenario
+    scenario = task.scenario  # no planner ever sees this one: what it is handed, it may change
     if not start_is_free(scenario):
         message = "the start is hit while the obstacles are observed"
-        return failed_trial(task, "invalid_scenario", message, time.perf_counter() - started)
-    session = Session(task.spec, scenario, predictor=task.predictor, limits=task.limits, seed=task.trial_seed)
+        return failed_trial(task, Failure("invalid_scenario", message), time.perf_counter() - started)
+    theirs = scenario.model_copy(deep=True)
+    session = Session(task.spec, theirs, predictor=task.predictor, limits=task.limits, seed=task.trial_seed)
     observer, execution, solves = Observer(task), Execution(scenario), list[Plan]()
     outcome, message = "", ""
     while not (outcome or execution.has_arrived):
@@ -85,6 +87,7 @@ def _judgement(judged: Audit) -> dict[str, object]:
     columns: dict[str, object] = {
         "arrival_time_s": judged.arrival_time_s,
         "min_clearance_m": judged.min_clearance_m,
+        **contact_columns(judged.contact),
     }
     for name in ("per_step", "swept", "executable"):
         verdict = getattr(judged, name)

@@ -33,6 +33,8 @@ TESTS_OF_CERTIFICATE = tuple(
 )
 AT_WORK, CUBES = "tests/suite/trial/test_planners_at_work.py::test_", "tests/planners/search/test_cubes.py::test_"
 
+GROWTH, CONTACT = "tests/suite/store/test_growth.py::test_", "tests/suite/auditor/test_audit_contact.py::test_"
+
 MUTANTS = (
     Mutant(
         "temporal is asked at every step, not at its path's end",
@@ -194,5 +196,68 @@ MUTANTS = (
         "if h >= 0.0 and arc[16] * inward >= arc[17] * h:",
         "if h >= 0.0:",
         ("tests/scenarios/test_collision.py",),
+    ),
+    Mutant(
+        "rows that an edited planner has left behind count as its own",
+        "suite/store/growth.py",
+        "        if code in codes:",
+        "        if codes:",
+        (f"{GROWTH}an_edited_planner_runs_again_alone_and_its_old_rows_stay",),
+    ),
+    Mutant(
+        "noise is no condition of a row",
+        "suite/trial/columns.py",
+        '    "noise_mm",\n    "dropout",',
+        '    "dropout",',
+        (f"{GROWTH}another_condition_is_another_row",),
+    ),
+    Mutant(
+        "tables show a trial's rows of any code",
+        "suite/store/schema.py",
+        "JOIN trials USING (key, house_code, planner_code)",
+        "JOIN trials USING (key)",
+        (f"{GROWTH}an_interrupted_run_of_stale_rows_goes_on",),
+    ),
+    Mutant(
+        "rows of the first version pass for ones of the present code",
+        "suite/store/run_folder.py",
+        'if "schema_version" in manifest or not (',
+        "if not (",
+        ("tests/suite/store/test_old_runs.py::test_a_manifest_that_is_new_says_nothing_of_old_rows",),
+    ),
+    Mutant(
+        "reading a run opens its journal for writing",
+        "suite/store/schema.py",
+        '"mode=ro&immutable=1"',
+        '"mode=rw"',
+        ("tests/suite/store/test_run_folder.py::test_reading_writes_nothing",),
+    ),
+    Mutant(
+        "trials of two arms, or with and without noise, are summed up together",
+        "suite/compare/tables.py",
+        'WORLDS = ["family", "n_obstacles", *(column.name for column in WORLD)]',
+        'WORLDS = ["family", "n_obstacles"]',
+        ("tests/suite/compare/test_conditions.py",),
+    ),
+    Mutant(
+        "a planner is handed the scenario that it is judged by",
+        EPISODE,
+        "theirs = scenario.model_copy(deep=True)",
+        "theirs = scenario",
+        ("tests/suite/trial/test_what_planners_are_handed.py",),
+    ),
+    Mutant(
+        "what touched first is what was nearest last",
+        AUDIT,
+        "if work.touching[0] < 0:",
+        "if work.nearest[0] >= 0:",
+        (f"{CONTACT}what_is_said_to_touch_does_and_nothing_else_did_before",),
+    ),
+    Mutant(
+        "an arm that sets out as it is touched was moving",
+        "suite/auditor/judge.py",
+        'times.searchsorted(found.swept_s, "left")',
+        'times.searchsorted(found.swept_s, "right")',
+        (f"{CONTACT}a_contact_at_a_timed_state_belongs_to_the_way_there",),
     ),
 )

@@ -46,6 +46,17 @@ def states_at(motion, times):
     return np.stack([np.interp(times, motion.times_s, column) for column in motion.configurations_rad.T], axis=1)
 
 
+def touching(motion, time):
+    """Clearance of every section (row) from every obstacle (column) at an instant, exact to a micrometre."""
+    arm, at = motion.scenario.arm, np.array([time])
+    points = backbone(arm, states_at(motion, at), np.linspace(0.0, 1.0, 301))[0].reshape(arm.n_sections, -1, 3)
+    apart = [
+        np.linalg.norm(points - obstacle.position(at)[0], axis=2).min(axis=1) - arm.radius_m - obstacle.radius_m
+        for obstacle in motion.scenario.obstacles
+    ]
+    return np.stack(apart, axis=1)
+
+
 def clearances(motion, times, points_per_section=20):
     """Clearance (T,) at each time: dense points on the backbone, denser ones about the nearest."""
     arm, q = motion.scenario.arm, states_at(motion, times)

@@ -1,7 +1,8 @@
 from fakes import behave, make_parts, make_tasks
 
+from planners.failure import Failure
 from suite.backends.agenda import TRIES, Agenda
-from suite.backends.job import Failure, Job
+from suite.backends.job import Job
 
 FAILURE = Failure("planner_error", "in warm-up: it failed")
 

@@ -62,6 +62,7 @@ BAD_RUNS = [
     ("--planners pf --hang-limit-s 0", "0"),
     ("--planners pf --hang-limit-s nan", "nan"),
     ("--planners pf --colour red", "--colour"),
+    ("--planners pf --fresh --keep-stale", "--keep-stale: found beside --fresh"),
     ("--preset table9", "'table9'"),
     ("--preset missing.json", "missing.json"),
     ("--planners pf --scenarios missing.yaml", "missing.yaml"),
@@ -221,6 +222,12 @@ def test_a_real_run_from_the_command_line(tmp_path) -> None:
     assert load_scenarios(tmp_path / "run" / "scenarios.jsonl") == generate("orbit", 0, 1, 7) + generate(
         "orbit", 1, 1, 7
     )
+    grown = start("run --planners t2,pf --obstacles 0,1 --trials 2 --seed 7 --workers 2 --out run")
+    out, err = grown.communicate(timeout=600)
+    assert grown.returncode == 0, err
+    assert "suite: 4 of 8 trials are there already" in err.splitlines()
+    assert "4 trials to run; warming up (compiles on first use)" in err.splitlines()
+    assert out.startswith("Predictor cubic; prediction margin 0; ")
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])

@@ -9,7 +9,7 @@ from suite.compare.statistics import wilson_interval
 from suite.compare.tables import summarize
 from suite.errors import SuiteError
 from suite.show.text import as_csv, as_markdown_page, render, render_pairs
-from suite.store.frames import read_trials_csv, trials_csv, trials_frame
+from suite.store.frames import TABLE_TYPES, read_trials_csv, trials_csv, trials_frame
 from suite.trial.columns import COLUMNS, Row, complete_row
 
 
@@ -202,6 +202,7 @@ def test_formats() -> None:
         assert set(text.splitlines()[1]) == {"|", "-"}
     assert render(summary, "csv") == as_csv(summary)
     assert as_csv(summary).count("\n") == 3
-    page = as_markdown_page("name", trials, summary)
-    assert page.startswith("# name\n\nPredictor cubic; motion limits off; observation noise 0 mm, dropout 0; seed 3.\n")
+    assert list(summary) == list(TABLE_TYPES)
+    page = as_markdown_page("name", summary)
+    assert page.startswith("# name\n\nPredictor cubic; motion limits off; observation noise 0 mm; dropout 0; seed 3.\n")
     assert "95 % Wilson interval" in page

@@ -1,10 +1,11 @@
 import json
 
 import pytest
-from fakes import FakeSpec, make_scenario
+from fakes import fake_spec, make_scenario
 
 from scenarios import save_scenarios
 from suite.errors import SuiteError
+from suite.experiment.code import house, house_code
 from suite.experiment.experiment import PRESETS, make_experiment, preset_fields
 from suite.experiment.manifest import make_manifest
 from suite.trial.task import TrialTask
@@ -57,13 +58,13 @@ def test_a_trial_seed_depends_on_names_only() -> None:
 
 def test_a_trial_seed_suits_ompl_and_never_moves() -> None:
     seeds = {
-        TrialTask(make_scenario(k), FakeSpec("pf"), predictor="cubic", limits=False, seed=s).trial_seed
+        TrialTask(make_scenario(k), fake_spec("pf"), predictor="cubic", limits=False, seed=s).trial_seed
         for k in range(50)
         for s in range(10)
     }
     assert len(seeds) == 500
     assert all(1 <= seed < 2**31 for seed in seeds)
-    task = TrialTask(make_scenario(7), FakeSpec("pf"), predictor="cubic", limits=False, seed=1)
+    task = TrialTask(make_scenario(7), fake_spec("pf"), predictor="cubic", limits=False, seed=1)
     assert task.trial_seed == 500767591  # recorded: a change here changes every result
 
 
@@ -77,9 +78,39 @@ def test_the_name_follows_every_choice() -> None:
     base = {"planners": ("pf",), "trials": 5}
     names = {
         make_experiment(**base, **change).name
-        for change in ({}, {"seed": 1}, {"limits": True}, {"noise_mm": 1.0}, {"dropout": 0.1}, {"obstacles": (1,)})
+        for change in ({}, {"seed": 1}, {"limits": True}, {"noise_mm": 1.0}, {"dropout": 0.1}, {"predictor": "gp"})
     }
     assert len(names) == 6
+
+
+def test_a_run_that_grows_stays_in_its_folder() -> None:
+    base = {"planners": ("pf",), "trials": 5}
+    names = {
+        make_experiment(**base | change).name
+        for change in ({}, {"trials": 6}, {"planners": ("rrt", "pf")}, {"obstacles": (1,)})
+    }
+    assert len(names) == 1
+
+
+def test_tasks_say_under_which_conditions_they_run() -> None:
+    experiment = make_experiment(
+        planners=("pf", "rrt", "clairvoyant"), obstacles=(1,), trials=1, arm="radius_m=0.015",
+        family="orbit[max_speed_m_s=0.03]",
+    )  # fmt: skip
+    rows = [task.identity for task in experiment.tasks(experiment.scenarios())]
+    assert [row["predictor"] for row in rows] == ["cubic", "portfolio", "truth"]
+    assert [row["prediction_margin"] for row in rows] == [0.0, 1.0, 0.0]
+    for row in rows:
+        assert (row["arm"], row["family_parameters"]) == ("radius_m=0.015", "max_speed_m_s=0.03")
+        assert row["house_code"] == row["planner_code"] == house_code(house())
+    plain = make_experiment(planners=("pf",), obstacles=(1,), trials=1)
+    (task,) = plain.tasks(plain.scenarios())
+    assert (task.identity["arm"], task.identity["family_parameters"]) == ("default", "default")
+
+
+def test_a_predictor_that_is_asked_for_is_had_by_all_but_bounds() -> None:
+    experiment = make_experiment(planners=("rrt", "clairvoyant"), obstacles=(1,), trials=1, predictor="arc")
+    assert [task.predictor for task in experiment.tasks(experiment.scenarios())] == ["arc", "truth"]
 
 
 def test_too_many_trials_in_all_are_refused_before_they_are_made() -> None:

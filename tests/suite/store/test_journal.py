@@ -1,56 +1,44 @@
-import json
-import os
-import signal
 import sqlite3
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 import pytest
-from fake_runs import run_with_fakes
-from fakes import behave, make_tasks
+from fake_runs import contents, killed_run, run_with_fakes
+from fakes import behave, fake_spec, make_scenario, make_tasks
 
+from planners import Failure
 from suite.errors import SuiteError
 from suite.store.journal import Journal
-from suite.store.run_folder import open_run
-from suite.trial.columns import TIMING_NAMES
-from suite.trial.task import failed_trial
+from suite.trial.columns import Row
+from suite.trial.task import Code, TrialTask, failed_trial
 
-MANIFEST = {
-    "experiment": {"planners": ["pf"], "trials": 3},
-    "versions": {"ompl": "2.0.1"},
-    "scenarios": {"count": 3, "hash": "a"},
-    "sources": "abc",
-    "machine": {"cores": 2},
-}
+HOUSE = {"sources": "abc", "versions": {"ompl": "2.0.1"}}
 
 
-def contents(folder: Path) -> dict[str, object]:
-    """Everything in a run's files that may not differ between two runs of one experiment."""
-    trials = pd.read_csv(folder / "trials.csv", dtype=str).drop(columns=list(TIMING_NAMES))
-    table = pd.read_csv(folder / "table.csv", dtype=str)
-    return {
-        "trials": trials.to_csv(),
-        "table": table[[name for name in table if "planning" not in name and "solve" not in name]].to_csv(),
-        "scenarios": (folder / "scenarios.jsonl").read_bytes(),
-        "trajectories": (folder / "trajectories.csv").read_bytes(),
-    }
+def rows_of(folder: Path) -> dict[int, Row]:
+    with Journal(folder / "run.db", read_only=True) as journal:
+        return {row["trial_seed"]: row for row in journal.rows()}
+
+
+def ask(journal: Journal, tasks: list[TrialTask]) -> None:
+    journal.ask({task.key: task.code for task in tasks}, HOUSE)
 
 
 def test_what_is_added_comes_back(tmp_path) -> None:
     tasks = make_tasks(["a", "b"], trials=3)
     results = {task.key: behave(task) for task in tasks}
     with Journal(tmp_path / "run.db") as journal:
+        ask(journal, tasks)
         for task in reversed(tasks):
             journal.add(task, results[task.key])
-    with Journal(tmp_path / "run.db") as journal:
-        assert journal.finished() == set(results)
-        assert {(row["scenario_hash"], row["planner"]): row for row in journal.rows()} == {
-            key: result.row for key, result in results.items()
-        }
-        executed = list(journal.executed())
+    for read_only in (False, True):
+        with Journal(tmp_path / "run.db", read_only=read_only) as journal:
+            assert journal.finished() == set(results)
+            assert journal.made() == {task.key: [task.code] for task in tasks}
+            assert journal.houses().popitem()[1] == HOUSE
+            found = {(row["scenario_id"], row["planner"]): row for row in journal.rows()}
+            assert found == {(task.scenario.id, task.spec.label): results[task.key].row for task in tasks}
+            executed = list(journal.executed())
     assert [(trial.scenario_id, trial.planner) for trial in executed] == sorted(
         (task.scenario.id, task.spec.label) for task in tasks
     )
@@ -59,38 +47,113 @@ def test_what_is_added_comes_back(tmp_path) -> None:
     np.testing.assert_array_equal(executed[0].configurations_rad, first.configurations_rad)
 
 
+def test_only_what_is_asked_for_is_shown(tmp_path) -> None:
+    tasks = make_tasks(["a", "b"], trials=2)
+    with Journal(tmp_path / "run.db") as journal:
+        ask(journal, tasks)
+        for task in tasks:
+            journal.add(task, behave(task))
+        ask(journal, tasks[:1])
+        assert journal.finished() == {tasks[0].key}
+        assert [row["planner"] for row in journal.rows()] == ["a"]
+        assert len(list(journal.executed())) == 1
+        assert len(journal.made()) == 4
+        ask(journal, tasks[::-1])
+        assert journal.finished() == {task.key for task in tasks}
+
+
 def test_a_trial_that_executed_nothing_has_an_empty_trajectory(tmp_path) -> None:
     (task,) = make_tasks(["a"])
     with Journal(tmp_path / "run.db") as journal:
-        journal.add(task, failed_trial(task, "planner_hung", "killed", 1.0))
+        ask(journal, [task])
+        journal.add(task, failed_trial(task, Failure("planner_hung", "killed"), 1.0))
         (executed,) = journal.executed()
     assert executed.configurations_rad.shape == (0, 6)
 
 
-def test_a_trial_cannot_be_stored_twice(tmp_path) -> None:
+def with_code(task: TrialTask, code: Code) -> TrialTask:
+    return TrialTask(task.scenario, task.spec, task.predictor, task.limits, task.seed, code=code)
+
+
+def test_a_trial_cannot_be_stored_twice_but_by_other_code(tmp_path) -> None:
     (task,) = make_tasks(["a"])
+    edited = with_code(task, Code("house", "edited"))
+    assert edited.key == task.key
     with Journal(tmp_path / "run.db") as journal:
         journal.add(task, behave(task))
         with pytest.raises(sqlite3.IntegrityError):
             journal.add(task, behave(task))
+        journal.add(edited, behave(edited))
+        assert journal.made() == {task.key: [task.code, edited.code]}
+        ask(journal, [edited])
+        assert [row["planner_code"] for row in journal.rows()] == ["edited"]
+        ask(journal, [task])
+        assert [row["planner_code"] for row in journal.rows()] == [task.code.planner]
+
+
+def test_a_row_of_another_trial_is_not_taken(tmp_path) -> None:
+    one, other = make_tasks(["a"], trials=2)
+    with Journal(tmp_path / "run.db") as journal, pytest.raises(AssertionError):
+        journal.add(one, behave(other))
+
+
+def test_every_condition_makes_another_trial() -> None:
+    base = {"scenario": make_scenario(1), "spec": fake_spec("a"), "predictor": "cubic", "limits": False, "seed": 0}
+    changes = [
+        {},
+        {"scenario": make_scenario(2)},
+        {"scenario": make_scenario(1).model_copy(update={"id": "renamed"})},  # its seed hangs on its name
+        {"spec": fake_spec("b")},
+        {"spec": fake_spec("a", settings=fake_spec("a").settings.model_copy(update={"gain": 0.6}))},
+        {"predictor": "arc"},
+        {"limits": True},
+        {"seed": 1},
+        {"noise_mm": 1.0},
+        {"dropout": 0.1},
+    ]
+    assert len({TrialTask(**(base | change)).key for change in changes}) == len(changes)
+    assert TrialTask(**base, code=Code("x", "y")).key == TrialTask(**base).key
+
+
+def test_the_whole_traceback_is_kept(tmp_path) -> None:
+    (task,) = make_tasks(["a"])
+    with Journal(tmp_path / "run.db") as journal:
+        journal.add(task, failed_trial(task, Failure("planner_error", "ValueError", "Traceback: all of it"), 1.0))
+    with sqlite3.connect(tmp_path / "run.db") as db:
+        assert db.execute("SELECT traceback FROM trials").fetchall() == [("Traceback: all of it",)]
+    db.close()
+
+
+@pytest.mark.parametrize(
+    ("statement", "line"),
+    [
+        ("UPDATE trials SET min_clearance_m = 'wide'", "run.db: found a row with a value that fits no trial"),
+        ("UPDATE trials SET executed = x'00ff'", "run.db: fake-0000 a: found no trajectory in it"),
+        ("UPDATE trials SET executed = 7", "run.db: fake-0000 a: found no trajectory in it"),
+    ],
+)
+def test_values_that_fit_no_trial_are_one_line(tmp_path, statement: str, line: str) -> None:
+    (task,) = make_tasks(["a"])
+    with Journal(tmp_path / "run.db") as journal:
+        ask(journal, [task])
+        journal.add(task, behave(task))
+    with sqlite3.connect(tmp_path / "run.db") as db:
+        db.execute(statement)
+    db.close()
+    with Journal(tmp_path / "run.db", read_only=True) as journal, pytest.raises(SuiteError, match=line):
+        list(journal.rows()), list(journal.executed())
 
 
 def test_a_killed_run_goes_on_and_ends_like_an_unbroken_one(tmp_path) -> None:
-    call = f"from fake_runs import *; run_with_fakes(Path({str(tmp_path / 'broken')!r}), die_after=5)"
-    tests = Path(__file__).parents[2]  # its folders are named after the packages: those come first
-    path = os.environ | {"PYTHONPATH": f"{tests.parent}{os.pathsep}{tests}"}
-    killed = subprocess.run([sys.executable, "-c", call], env=path, check=False)
-    assert killed.returncode == -signal.SIGKILL
+    killed_run(tmp_path / "broken", die_after=5, in_processes=True)
     assert not (tmp_path / "broken" / "trials.csv").exists()
-    with Journal(tmp_path / "broken" / "run.db") as journal:
-        before = {(row["scenario_hash"], row["planner"]): row for row in journal.rows()}
+    before = rows_of(tmp_path / "broken")
     assert len(before) == 5
 
-    run_with_fakes(tmp_path / "broken")
+    assert len(run_with_fakes(tmp_path / "broken", in_processes=True)) == 11
     run_with_fakes(tmp_path / "unbroken")
     assert contents(tmp_path / "broken") == contents(tmp_path / "unbroken")
-    with Journal(tmp_path / "broken" / "run.db") as journal:
-        after = {(row["scenario_hash"], row["planner"]): row for row in journal.rows()}
+    after = rows_of(tmp_path / "broken")
     assert len(after) == 16
     assert before.items() <= after.items()  # finished trials were not run again: even their timings stand
 
@@ -98,87 +161,7 @@ def test_a_killed_run_goes_on_and_ends_like_an_unbroken_one(tmp_path) -> None:
 def test_a_finished_run_runs_nothing_and_writes_the_same_bytes(tmp_path) -> None:
     run_with_fakes(tmp_path)
     first = {file.name: file.read_bytes() for file in tmp_path.iterdir()}
-    run_with_fakes(tmp_path)
+    assert run_with_fakes(tmp_path) == []
     second = {file.name: file.read_bytes() for file in tmp_path.iterdir()}
     assert first.keys() == second.keys()
     assert {name for name in first if first[name] != second[name]} <= {"run.db"}
-
-
-def test_fresh_starts_over(tmp_path) -> None:
-    run_with_fakes(tmp_path)
-    with Journal(tmp_path / "run.db") as journal:
-        before = {row["trial_seed"]: row["planning_time_s"] for row in journal.rows()}
-    run_with_fakes(tmp_path, fresh=True)
-    with Journal(tmp_path / "run.db") as journal:
-        after = {row["trial_seed"]: row["planning_time_s"] for row in journal.rows()}
-    assert before.keys() == after.keys()
-    assert before != after
-
-
-@pytest.mark.parametrize(
-    ("part", "other", "line"),
-    [
-        ("experiment", {"planners": ["pf"], "trials": 4}, "trials: 3 there, 4 here"),
-        ("versions", {"ompl": "2.1"}, 'ompl: "2.0.1" there, "2.1" here'),
-        ("scenarios", {"count": 3, "hash": "b"}, "other scenarios"),
-        ("sources", "def", "the sources have changed since"),
-    ],
-)
-def test_another_run_is_refused_untouched(tmp_path, part: str, other: object, line: str) -> None:
-    with open_run(tmp_path, MANIFEST, fresh=False):
-        pass
-    before = (tmp_path / "manifest.json").read_bytes()
-    with pytest.raises(SuiteError) as caught, open_run(tmp_path, MANIFEST | {part: other}, fresh=False):
-        pass
-    assert str(caught.value) == (
-        f"{tmp_path}: holds another run ({line}); start it over with --fresh, or choose another folder with --out"
-    )
-    assert (tmp_path / "manifest.json").read_bytes() == before
-    with open_run(tmp_path, MANIFEST | {part: other}, fresh=True):
-        pass
-    assert json.loads((tmp_path / "manifest.json").read_text())[part] == other
-
-
-def test_a_run_may_go_on_on_another_machine(tmp_path) -> None:
-    with open_run(tmp_path, MANIFEST, fresh=False):
-        pass
-    with open_run(tmp_path, MANIFEST | {"machine": {"cores": 64}}, fresh=False):
-        pass
-
-
-@pytest.mark.parametrize("fresh", [False, True])
-def test_a_folder_of_other_things_is_left_alone(tmp_path, fresh: bool) -> None:
-    (tmp_path / "thesis.tex").write_text("years of work")
-    with (
-        pytest.raises(SuiteError, match=r"found thesis\.tex and no manifest\.json"),
-        open_run(tmp_path, MANIFEST, fresh=fresh),
-    ):
-        pass
-    assert [file.name for file in tmp_path.iterdir()] == ["thesis.tex"]
-
-
-def test_fresh_deletes_only_files_of_the_run(tmp_path) -> None:
-    with open_run(tmp_path, MANIFEST, fresh=False):
-        pass
-    (tmp_path / "notes.txt").write_text("mine")
-    with open_run(tmp_path, MANIFEST, fresh=True):
-        pass
-    assert (tmp_path / "notes.txt").read_text() == "mine"
-
-
-def test_one_process_at_a_time(tmp_path) -> None:
-    with (
-        open_run(tmp_path, MANIFEST, fresh=False),
-        pytest.raises(SuiteError, match="another process is running in it"),
-        open_run(tmp_path, MANIFEST, fresh=True),
-    ):
-        pass
-
-
-def test_a_broken_manifest_is_one_line(tmp_path) -> None:
-    (tmp_path / "manifest.json").write_text('{"experiment": ')
-    with (
-        pytest.raises(SuiteError, match=r"manifest\.json: cannot be read: "),
-        open_run(tmp_path, MANIFEST, fresh=False),
-    ):
-        pass

@@ -1,3 +1,5 @@
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -44,3 +46,9 @@ def test_zero_is_not_missing() -> None:
 def test_an_unknown_name_is_an_error() -> None:
     with pytest.raises(KeyError, match="planing_time_s"):
         complete_row({"planing_time_s": 1.0})
+
+
+def test_every_column_is_in_the_docs() -> None:
+    page = (Path(__file__).parents[3] / "docs" / "numbers.md").read_text()
+    for column in COLUMNS:
+        assert f"| `{column.name}` | {column.unit} | {column.meaning} |" in page

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from fakes import FakeSpec
+from fakes import fake_spec
 
 from planners import Plan
 from scenarios import ContinuumArm, Obstacle, Scenario, Track
@@ -65,7 +65,7 @@ def scene(*obstacles: Obstacle, time_limit_s: float = 20.0) -> Scenario:
 def run(monkeypatch):
     def run_script(script: Script, scenario: Scenario | None = None, **others: float):
         monkeypatch.setattr(episode, "Session", script)
-        task = TrialTask(scenario or scene(), FakeSpec("x"), predictor="cubic", limits=False, seed=3, **others)
+        task = TrialTask(scenario or scene(), fake_spec("x"), predictor="cubic", limits=False, seed=3, **others)
         return run_trial(task)
 
     return run_script
@@ -126,7 +126,7 @@ def test_whoever_is_asked_is_told_what_was_seen_until_then(run) -> None:
     scenario = scene(sphere((0.0, (0.5, 0.0, 0.0)), (9.0, (0.9, 0.0, 0.0))), time_limit_s=5.0)
     script = Script("while_valid", wander)
     run(script, scenario, noise_mm=2.0, dropout=0.2)
-    task = TrialTask(scenario, FakeSpec("y"), predictor="cubic", limits=False, seed=3, noise_mm=2.0, dropout=0.2)
+    task = TrialTask(scenario, fake_spec("y"), predictor="cubic", limits=False, seed=3, noise_mm=2.0, dropout=0.2)
     assert len(script.observations) == 5
     for second, told in enumerate(script.observations):
         expected = Observer(task).until(float(second))

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fakes import FakeSpec
+from fakes import fake_spec
 
 from scenarios import Line, Obstacle, Orbit, Scenario
 from suite.trial.observation import Observer
@@ -22,7 +22,7 @@ LONG = SCENARIO.model_copy(update={"id": "long", "time_limit_s": 3600.0, "obstac
 
 
 def task_of(scenario: Scenario = SCENARIO, label: str = "a", seed: int = 0, **others: float) -> TrialTask:
-    return TrialTask(scenario, FakeSpec(label), predictor="cubic", limits=False, seed=seed, **others)
+    return TrialTask(scenario, fake_spec(label), predictor="cubic", limits=False, seed=seed, **others)
 
 
 def all_seen(task: TrialTask) -> np.ndarray:
