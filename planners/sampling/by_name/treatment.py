@@ -34,7 +34,7 @@ TREATMENTS: dict[str, Treatment] = {
     "SORRTstar": Treatment("Gammell et al., ICRA 2015", {"goal_bias": 0.4}),
 }
 
-_THREAD = "its second thread waits for Python's checks for ever; prm searches OMPL's roadmap in time"
+_THREAD = "its second thread waits for Python for ever; prm searches its roadmap in time"
 
 REFUSED: dict[str, str] = {
     "AORRTC": "OMPL 2.0.1's can go on past any budget, and gives paths that begin at the goal",

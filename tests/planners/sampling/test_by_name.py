@@ -158,6 +158,18 @@ def test_a_planner_that_cannot_work_here_is_a_usage_error(tmp_path, capfd) -> No
     assert list(tmp_path.iterdir()) == []
 
 
+def test_all_of_them_are_listed_in_short_lines(capfd) -> None:
+    assert main(["planners"]) == 0
+    listed = capfd.readouterr().out.partition("OMPL's own, as")[2].partition("Predictors:")[0]
+    for name, planner in ompl_planners().items():
+        assert f"\n  {name}: {planner.source}\n" in listed
+    for name, reason in ompl_refused().items():
+        assert f"\n  {name}: {reason}\n" in listed
+    assert "goal_bias=0.4" in listed
+    assert "samples_per_batch=20" in listed
+    assert max(map(len, listed.splitlines())) <= 100
+
+
 def test_a_module_called_ompl_is_still_a_module() -> None:
     assert is_outside(read_spec("ompl.mine:Planner").name)
 
