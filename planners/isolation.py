@@ -20,7 +20,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from planners import plugins
 from planners.failure import Failure, failure_of
 from planners.prediction import PREDICTORS
-from planners.spec import PlannerSpec, is_outside, parse_planner, read_spec
+from planners.spec import PlannerSpec, is_outside, parse_planner, planner_class, read_spec
 from scenarios.spec import SpecError
 
 LIMIT_S = 60.0
@@ -46,6 +46,7 @@ class Facts(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
+    summary: str = ""
     settings: dict[str, Any] = {}
     predictor: str = "cubic"
     prediction_margin: float = 0.0
@@ -72,7 +73,7 @@ def describe(text: str, limit_s: float = LIMIT_S) -> PlannerSpec:
     if not is_outside(typed.name) or plugins.is_here(typed.name):
         return parse_planner(text)
     code = plugins.code_hash(typed.name)
-    facts = _facts_of(text, limit_s, code)
+    facts = facts_of(text, code, limit_s)
     if facts.mistake:
         raise SpecError(facts.mistake)
     settings = OutsideSettings(**(typed.values if facts.failure else facts.settings))
@@ -89,7 +90,7 @@ def describe(text: str, limit_s: float = LIMIT_S) -> PlannerSpec:
 
 
 @functools.lru_cache(maxsize=256)
-def _facts_of(text: str, limit_s: float, code: str) -> Facts:
+def facts_of(text: str, code: str, limit_s: float = LIMIT_S) -> Facts:
     """Start a child that imports the planner and read its answer: once for each state ``code`` of its sources."""
     del code
     with subprocess.Popen(
@@ -138,6 +139,7 @@ def _look_at(text: str) -> Facts:
         return Facts(failure=Failure("planner_error", f"in import: {found}"))
     settings = json.loads(spec.settings.model_dump_json())
     return Facts(
+        summary=planner_class(spec.name).summary,
         settings=settings,
         predictor=spec.predictor,
         prediction_margin=spec.prediction_margin,

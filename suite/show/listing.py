@@ -5,11 +5,14 @@ from __future__ import annotations
 import textwrap
 from collections import Counter
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
-from planners import PLANNERS, PREDICTORS, ompl_planners, ompl_refused
+from planners import ALIASES, PLANNERS, PREDICTORS, ompl_planners, ompl_refused, plugins
+from planners.isolation import Facts, facts_of
+from scenarios import SpecError
 
 
 def planners_text() -> str:
@@ -22,7 +25,10 @@ def _lines() -> Iterator[str]:
     for name, entry in PLANNERS.items():
         yield f"\n  {name}: {entry.summary}" + (" (sees the true future: a bound)" if entry.is_bound else "")
         yield from _settings(entry.settings_model.model_fields)
+    for alias, (name, values) in ALIASES.items():
+        yield f"\n  {alias}: {name}[{','.join(f'{key}={value}' for key, value in values.items())}]"
     yield from _ompl_lines()
+    yield from _plugin_lines()
     yield "\nPredictors:\n"
     for name, predictor in PREDICTORS.items():
         yield f"  {name}: {predictor.summary}"
@@ -56,3 +62,26 @@ def _ompl_lines() -> Iterator[str]:
     yield "  not here:"
     for name, reason in ompl_refused().items():
         yield f"  {name}: {reason}"
+
+
+def _plugin_lines() -> Iterator[str]:
+    """What installed distributions offer; each is looked at in a process of its own, so one that fails is a line."""
+    names = list(plugins.offered())
+    if not names:
+        return
+    yield f"\nOffered by installed distributions (entry points of {plugins.GROUP}):"
+    with ThreadPoolExecutor(8) as pool:
+        for name, facts in zip(names, pool.map(_look_at, names), strict=True):
+            problem = facts.mistake or (facts.failure.message if facts.failure else "")
+            yield f"  {name}: unavailable: {problem}" if problem else f"  {name}: {facts.summary}".rstrip(": ")
+            for key, value in facts.settings.items():
+                yield f"      {key} = {value}"
+
+
+def _look_at(name: str) -> Facts:
+    if name in (*PLANNERS, *ALIASES):
+        return Facts(mistake="the house has a planner of this name")
+    try:
+        return facts_of(name, plugins.code_hash(name))
+    except SpecError as mistake:
+        return Facts(mistake=str(mistake))

@@ -11,6 +11,7 @@ from planners import ArmPlanner, Session, describe, failure_of, parse_planner, p
 from planners.isolation import OutsideSettings
 from planners.spec import load, read_spec
 from scenarios import SpecError, generate
+from suite.show.listing import planners_text
 
 PLANNER = '''
 """A planner that stands still."""
@@ -99,6 +100,10 @@ def test_an_installed_distribution_offers_planners(folder) -> None:
     assert parse_planner("rrt").code == ""  # the house's names are the house's
     with pytest.raises(SpecError, match="mine_nowhere"):
         describe("broken")
+    listed = planners_text()
+    assert "  still: stands still\n      gain = 1.0\n" in listed
+    assert "  broken: unavailable: planner: found no module 'mine_nowhere'" in listed
+    assert "  rrt: unavailable: the house has a planner of this name" in listed
 
 
 def test_the_code_of_a_file_is_what_it_imports_from_beside_it_too(folder) -> None:
