@@ -9,7 +9,6 @@ from collections.abc import Generator, Sequence
 from suite.backends.job import Failure, Job, OnWarmUp, Part
 from suite.trial.task import TrialResult, TrialTask, failed_trial
 
-
 MANY_OBJECTS = 300_000
 """Made by compiling, not by loading what was compiled: worth the tenth of a second that it takes to clear away."""
 
