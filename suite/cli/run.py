@@ -50,7 +50,9 @@ def run(
         list[Path] | None, typer.Option(help="Scenario file to use instead of a family; may be repeated.")
     ] = None,
     workers: Annotated[int | None, typer.Option(help="Processes. [default: all cores]")] = None,
-    hang_limit_s: Annotated[float, typer.Option(help="A trial that takes longer is killed.")] = 300.0,
+    hang_limit_s: Annotated[
+        float, typer.Option(help="A trial that takes longer is killed; a warm-up has 120 s at least.")
+    ] = 300.0,
     out: Annotated[Path | None, typer.Option(help="Folder of the run. [default: results/NAME]")] = None,
     fresh: Annotated[bool, typer.Option("--fresh", help="Start over what the folder holds.")] = False,
     keep_stale: Annotated[

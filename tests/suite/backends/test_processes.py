@@ -143,7 +143,7 @@ def test_what_cannot_be_sent_to_a_worker_is_a_row() -> None:
         pass
 
     tasks = make_tasks(["fine", "local"])
-    tasks[1].__dict__["more"] = Local()
+    tasks[1].__dict__["local"] = Local()
     found = {task.spec.label: result.row for task, result in Processes(1).run(Job(behave, 60.0), tasks)}
     assert "cannot be sent to a worker process" in found["local"]["message"]
     assert found["fine"]["message"] is None
