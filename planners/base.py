@@ -6,9 +6,7 @@ from collections.abc import Callable
 from ompl import base as ob
 
 from planners.problem import SpaceTimeProblem, TimedPath, read_state, write_path
-from planners.search.cubes import EdgeFilter
 from scenarios.arm import FloatArray
-from scenarios.scenario import STEP_S
 
 
 class ArmPlanner(ob.Planner):
@@ -22,13 +20,6 @@ class ArmPlanner(ob.Planner):
         """Configurations checked by this planner's own kernels, beside those the shared checker counts."""
         self.motion_checks = 0
         """Motions checked by this planner's own kernels, beside those the shared validator counts."""
-
-    def motion_filter(self, now_s: float) -> EdgeFilter | None:
-        """Which motions between two whole steps from ``now_s`` the validator allows; None where limits do not bind."""
-        if not self.problem.query.limits:
-            return None
-        check = self.problem.validator.check_all
-        return lambda k, before, after: check(before, now_s + k * STEP_S, after, now_s + (k + 1) * STEP_S)
 
     @abstractmethod
     def search(self, q: FloatArray, now_s: float, stop: Callable[[], bool]) -> TimedPath | None:

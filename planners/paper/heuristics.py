@@ -13,8 +13,9 @@ from pydantic import BaseModel, ConfigDict, Field
 from planners.base import ArmPlanner
 from planners.problem import SpaceTimeProblem, TimedPath
 from planners.search.configurations import enumerated_space
-from planners.search.cubes import LayeredGraph, ObstacleSteps
 from planners.search.cubes import _kernels as kernels
+from planners.search.layers import LayeredGraph
+from planners.search.scene import frozen, scene_of
 from scenarios.arm import FloatArray
 from scenarios.scenario import STEP_S
 
@@ -71,14 +72,14 @@ class StaticPathPlanner(ArmPlanner):
 
     def _transition(self, q: FloatArray, now_s: float, here: int, following: int) -> FloatArray | None:
         """Present and next configuration (2, dof) [rad] of the smoothest transition; None when the cube is blocked."""
-        query, space = self.problem.query, self._space
-        obstacles = ObstacleSteps.frozen(query.world, query.arm.radius_m)
-        radii = obstacles.reach_m[0] - query.arm.radius_m
-        if kernels.contains_obstacle(following, space.half, space.cube_m, obstacles.centers_m[0], radii):
+        query, space, now = self.problem.query, self._space, frozen(self.problem.query.world)
+        if kernels.contains_obstacle(following, space.half, space.cube_m, now.centers_m[0], now.radii_m[0]):
             return None
-        layered = LayeredGraph(query.arm, space, q, [here, following], obstacles)
+        layered = LayeredGraph(scene_of(query.arm, space, q, now_s, now, 1, query.limits), [here, following])
+        path = layered.smoothest_path(look=query.limits)
         self.state_checks += layered.state_checks
-        return layered.smoothest_path(self.motion_filter(now_s))
+        self.motion_checks += layered.motion_checks
+        return path
 
 
 class PurgingPlanner(StaticPathPlanner):

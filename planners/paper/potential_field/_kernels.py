@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from planners.problem._kernels import fastest_tip, largest_bend_change
+from planners.search.rates._kernels import fastest_tip, largest_bend_change
 from scenarios.kernels.jit import kernel
 from scenarios.kernels.kinematics import ARC_SIZE, point_on_arc, position_jacobian, section_arcs
 
