@@ -19,7 +19,7 @@ import networkx as nx
 import numpy as np
 
 from planners.search.configurations import EnumeratedSpace
-from planners.search.cubes import ObstacleSteps
+from planners.search.scene import ObstacleSteps
 from scenarios import ContinuumArm, SampledWorld, is_motion_valid
 from scenarios.arm import FloatArray
 
@@ -155,7 +155,7 @@ class Round:
         graph.add_node((0, 0))
         for step, (cube, other) in enumerate(itertools.pairwise(cubes)):
             before, after = self.layer(cube, step), self.layer(other, step + 1)
-            for a, b in itertools.product(range(len(before)), range(len(after))):
+            for a, b in itertools.product(range(len(before) if step else 1), range(len(after))):
                 if not looked_at or self.is_free((cube, a), (other, b), step):
                     graph.add_edge((step, a), (step + 1, b), s=smoothness(before[a], after[b]))
         cost, paths = nx.single_source_bellman_ford(graph, (0, 0), weight="s")
@@ -166,15 +166,15 @@ class Round:
         return np.array([self.layer(cubes[step], step)[k] for step, k in paths[end]])
 
     def _layer(self, cube: Cube, step: int) -> FloatArray:
-        """Free configurations of a cube at a step, (N, dof); at step 0 there is the present one alone."""
+        """Free configurations of a cube at a step, (N, dof); the present one counts as one of its own cube's."""
         query = self.query
         inside = query.space.decode(_codes(query.space, cube))
         if cube == self.here:
             inside = np.vstack([query.q, inside])
-        if step == 0:
-            return inside[:1] if cube == self.here else inside[:0]
         centers = np.broadcast_to(query.obstacles.centers_m[step], (len(inside), *query.obstacles.centers_m[step].shape))
-        return np.asarray(inside[_clearances(query.arm, inside, centers, query.obstacles.reach_m[step]) > 0.0])
+        free = _clearances(query.arm, inside, centers, query.obstacles.reach_m[step]) > 0.0
+        free[:1] |= cube == self.here and step == 0  # that is where the arm is
+        return np.asarray(inside[free])
 
     def _is_free(self, before: Place, after: Place, step: int) -> bool:
         """Whether the motion touches nothing at any instant of [step, step + 1]."""

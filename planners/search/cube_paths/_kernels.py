@@ -17,6 +17,7 @@ from planners.search.layers._kernels import (
     N_CONFIGURATIONS,
     NONE,
     add_layer,
+    add_start,
     clear,
     is_possible,
     size,
@@ -39,8 +40,8 @@ class Reading(NamedTuple):
 
     transitions: int
     """STEPS: an edge leads to a cube that holds a free configuration at its end. LAYERS: the same, and motions of the
-    layered graph are looked at. EDGES: and the arm can move from some free configuration of the one cube to some of the
-    other. CHAINED: to some, from some that it can be in by such motions."""
+    layered graph are looked at. EDGES: and an arm can move from some free configuration of the one cube to some of the
+    other. CHAINED: and it can move so from the present configuration on, all along the path."""
     reachable: bool
     """Whether q_b is the closest cube that can be reached, or simply the closest."""
     waiting: bool
@@ -150,8 +151,7 @@ def chained_path(layers, scene, box, numbers, target, waiting):
     """
     horizon = box.known.shape[0] - 1
     layers.configurations.labels[: layers.counts[N_CONFIGURATIONS]] = NONE
-    layers, start = _layer_at(layers, scene, box, numbers, box.here, 0)
-    layers.configurations.labels[layers.spans[start, FIRST]] = 0
+    layers.configurations.labels[layers.spans[numbers[0, box.here], FIRST]] = 0
     cells, steps, parents, lengths = [box.here], [0], [NONE], [0]
     heap = [(_straight(box, box.here, target), hops_between(box, box.here, target), 0, 0)]
     open_at_all = False
@@ -208,8 +208,10 @@ def plan(layers, scene, goal, horizon, reading):
     """
     clear(layers)
     box = box_about(scene, goal, horizon)
-    numbers = np.full((horizon + 1, box.cubes.shape[0]), NONE)
-    vertices = np.empty(0, np.int64)
+    numbers, vertices = np.full((horizon + 1, box.cubes.shape[0]), NONE), np.empty(0, np.int64)
+    layers, start = add_start(layers, scene)
+    if reading.transitions != EDGES:  # Algorithm 1 is told the cube where the arm is, not its configuration
+        numbers[0, box.here] = start
     for candidate in box.order if reading.reachable else np.array([closest_cube(box, scene)]):
         if reading.transitions == CHAINED:
             layers, vertices = chained_path(layers, scene, box, numbers, candidate, reading.waiting)
@@ -223,6 +225,7 @@ def plan(layers, scene, goal, horizon, reading):
     steps = vertices.shape[0] - 1
     if steps < 0:
         return vertices, np.empty((0, scene.q.shape[0]))
+    numbers[0, box.here] = start
     chain, blocks = np.zeros(steps + 1, np.int64), np.empty(steps, np.int64)
     for step in range(steps):
         layers, chain[step], chain[step + 1], blocks[step] = _between(

@@ -159,30 +159,46 @@ def _append(layers, scene, code):
 
 
 @kernel
+def _open_layer(layers, step, more):
+    """The layers with an empty one at their end, which has room for ``more`` configurations, and its number."""
+    layers = _with_room(layers, more)
+    number, first = layers.counts[N_LAYERS], layers.counts[N_CONFIGURATIONS]
+    layers.counts[N_LAYERS] += 1
+    layers.spans[number, STEP], layers.spans[number, FIRST], layers.spans[number, END] = step, first, first
+    layers.blocks[number] = NONE
+    return layers, number
+
+
+@kernel
+def add_start(layers, scene):
+    """Add the layer at step 0 that holds the present configuration alone; returns the layers and its number."""
+    layers, number = _open_layer(layers, 0, 1)
+    _append(layers, scene, CURRENT)
+    layers.spans[number, END] += 1
+    return layers, number
+
+
+@kernel
 def add_layer(layers, scene, cube, step):
-    """Add the free configurations of ``cube`` at ``step``; at step 0 there is the present one alone.
+    """Add the free configurations of ``cube``, -1 for one off the grid, at ``step``.
 
     The present configuration counts as one of its own cube's, before the others.
 
     Returns:
         The layers and the number of the new one.
     """
-    space = scene.space
-    first, end = (space.offsets[cube], space.offsets[cube + 1]) if cube >= 0 and step > 0 else (0, 0)
-    layers = _with_room(layers, end - first + 1)
-    number = layers.counts[N_LAYERS]
-    layers.counts[N_LAYERS] += 1
-    layers.blocks[number] = NONE
-    layers.spans[number, STEP], layers.spans[number, FIRST] = step, layers.counts[N_CONFIGURATIONS]
-    centers, reach, arcs = scene.steps.centers_m[step], scene.steps.reach_m[step], layers.stack.arcs[0]
-    if cube == scene.cube and (step == 0 or is_free(scene.q, scene.section_length, centers, reach, arcs)):
+    space, is_current = scene.space, cube == scene.cube
+    first, end = (space.offsets[cube], space.offsets[cube + 1]) if cube >= 0 else (0, 0)
+    layers, number = _open_layer(layers, step, end - first + 1)
+    centers, reach = scene.steps.centers_m[step], scene.steps.reach_m[step]
+    arcs, memo = layers.stack.arcs[0], layers.memo[step]
+    if is_current and is_free(scene.q, scene.section_length, centers, reach, arcs):
         _append(layers, scene, CURRENT)
     for k in range(first, end):
-        if is_code_free(space.codes[k], space.n_sections, space.arc_table, centers, reach, layers.memo[step], arcs):
+        if is_code_free(space.codes[k], space.n_sections, space.arc_table, centers, reach, memo, arcs):
             _append(layers, scene, space.codes[k])
     layers.spans[number, END] = layers.counts[N_CONFIGURATIONS]
-    if step > 0:
-        layers.counts[STATE_CHECKS] += end - first + (1 if cube == scene.cube else 0)
+    layers.counts[STATE_CHECKS] += end - first + (1 if is_current else 0)
     return layers, number
 
 
@@ -354,8 +370,9 @@ def layered_graph(layers, scene, cubes):
     """
     clear(layers)
     chain, blocks = np.empty(cubes.shape[0], np.int64), np.empty(cubes.shape[0] - 1, np.int64)
-    for step in range(cubes.shape[0]):
+    layers, chain[0] = add_start(layers, scene)
+    for step in range(1, cubes.shape[0]):
         layers, chain[step] = add_layer(layers, scene, cubes[step], step)
-        if step > 0:  # one way on from each layer: any direction will do
-            layers, blocks[step - 1] = with_motions(layers, scene, chain[step - 1], chain[step], 0)
+        # One way on from each layer: any direction will do.
+        layers, blocks[step - 1] = with_motions(layers, scene, chain[step - 1], chain[step], 0)
     return layers, chain, blocks
