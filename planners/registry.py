@@ -14,7 +14,7 @@ from planners.continuous.planner import (
     ContinuousPlanner,
     ContinuousSettings,
 )
-from planners.paper.heuristics import HeuristicSettings, PurgingPlanner, WaitingPlanner
+from planners.paper.heuristics import HeuristicSettings, PurgingPlanner, PurgingSettings, WaitingPlanner
 from planners.paper.potential_field import PotentialFieldPlanner, PotentialFieldSettings
 from planners.paper.temporal import TemporalPlanner, TemporalSettings
 from planners.problem import SpaceTimeProblem
@@ -95,7 +95,7 @@ PLANNERS: dict[str, PlannerEntry] = {
             "h",
             "static cube path, recomputed without the cubes found blocked",
             "first heuristic: paper, section IV-A",
-            HeuristicSettings,
+            PurgingSettings,
             PurgingPlanner,
             "path",
             lambda _: 1.0,

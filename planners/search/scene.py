@@ -104,6 +104,12 @@ def frozen(world: SampledWorld) -> SampledWorld:
     return SampledWorld(world.start_s, world.step_s, centers, radii, 0.0)
 
 
+def without_obstacles(world: SampledWorld) -> SampledWorld:
+    """The same span of time with nothing in it."""
+    rows = len(world.centers_m)
+    return SampledWorld(world.start_s, world.step_s, np.empty((rows, 0, 3)), np.empty((rows, 0)), 0.0)
+
+
 @functools.lru_cache(maxsize=8)
 def _change_table(bends: bytes) -> FloatArray:
     """Orientation changes between all lattice bends, computed once per lattice."""

@@ -17,7 +17,8 @@ RADII = np.array([0.03])
 
 def follow(q: np.ndarray, goal: np.ndarray, center: np.ndarray, duration: float = 0.1, **settings: float) -> np.ndarray:
     s = PotentialFieldSettings(**settings)
-    gains = (s.attraction, s.repulsion, s.influence_m, s.limit_gain, s.limit_margin_rad)
+    fastest_push = 10.0 * ARM.max_tip_speed_m_s
+    gains = (s.attraction, s.repulsion, s.influence_m, fastest_push, s.limit_gain, s.limit_margin_rad)
     return _kernels.field_step(
         q, goal, np.atleast_2d(center).astype(float), RADII, ARM.section_length_m, ARM.radius_m, ARM.max_bend_rad,
         ARM.max_bend_rate_rad_s, ARM.max_tip_speed_m_s, duration, gains,
