@@ -92,25 +92,3 @@ def motion_valid(q0, t0, q1, t1, section_length, arm_radius, max_bend, bend_rate
         return False
     share, _ = motion_clear_until(q0, t0, q1, t1, 0.0, tolerance, section_length, arm_radius, world)
     return share >= 1.0
-
-
-@kernel
-def motions_valid(before, t0, after, t1, section_length, arm_radius, max_bend, bend_rate, tip_speed, tolerance, world):
-    """``motion_valid`` from each of ``before`` (A, 2n) to each of ``after`` (B, 2n): (A, B)."""
-    out = np.empty((before.shape[0], after.shape[0]), np.bool_)
-    for a in range(before.shape[0]):
-        for b in range(after.shape[0]):
-            out[a, b] = motion_valid(
-                before[a],
-                t0,
-                after[b],
-                t1,
-                section_length,
-                arm_radius,
-                max_bend,
-                bend_rate,
-                tip_speed,
-                tolerance,
-                world,
-            )
-    return out
