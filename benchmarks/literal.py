@@ -171,7 +171,9 @@ class Round:
         inside = query.space.decode(_codes(query.space, cube))
         if cube == self.here:
             inside = np.vstack([query.q, inside])
-        centers = np.broadcast_to(query.obstacles.centers_m[step], (len(inside), *query.obstacles.centers_m[step].shape))
+        centers = np.broadcast_to(
+            query.obstacles.centers_m[step], (len(inside), *query.obstacles.centers_m[step].shape)
+        )
         free = _clearances(query.arm, inside, centers, query.obstacles.reach_m[step]) > 0.0
         free[:1] |= cube == self.here and step == 0  # that is where the arm is
         return np.asarray(inside[free])

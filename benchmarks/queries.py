@@ -12,7 +12,7 @@ from planners import Observation, build_predictor
 from planners.paper.temporal import READINGS
 from planners.search.configurations import enumerated_space
 from planners.search.cube_paths import _kernels
-from planners.search.layers import empty_layers
+from planners.search.layers import call, empty_layers
 from planners.search.scene import Scene, scene_of
 from scenarios import Scenario, generate
 from scenarios.arm import FloatArray
@@ -39,7 +39,8 @@ def solve(query: Query) -> Solved:
     space = query.space
     layers = empty_layers(space.n_sections, len(space.bends_rad), query.horizon)
     reading = _kernels.Reading(READINGS[query.transitions], query.target == "reachable", True)
-    cubes, path = _kernels.plan(layers, scene(query), space.cube_of(query.goal_m), query.horizon, reading)
+    goal = space.cube_of(query.goal_m)
+    _, (cubes, path) = call(_kernels.plan, layers, scene(query), goal, query.horizon, reading)
     return Solved(cubes.tolist(), path)
 
 

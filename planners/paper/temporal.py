@@ -10,7 +10,7 @@ from planners.base import ArmPlanner
 from planners.problem import SpaceTimeProblem, TimedPath
 from planners.search.configurations import enumerated_space
 from planners.search.cube_paths import _kernels
-from planners.search.layers import empty_layers
+from planners.search.layers import call, empty_layers
 from planners.search.layers._kernels import MOTION_CHECKS, STATE_CHECKS
 from planners.search.scene import scene_of
 from scenarios.arm import FloatArray
@@ -55,7 +55,7 @@ class TemporalPlanner(ArmPlanner):
         query = self.problem.query
         scene = scene_of(query.arm, self._space, q, now_s, query.world, self._horizon, query.limits)
         goal = self._space.cube_of(query.goal_m)
-        _, path = _kernels.plan(self._layers, scene, goal, self._horizon, self._reading)
+        self._layers, (_, path) = call(_kernels.plan, self._layers, scene, goal, self._horizon, self._reading)
         self.state_checks += int(self._layers.counts[STATE_CHECKS])
         self.motion_checks += int(self._layers.counts[MOTION_CHECKS])
         if not len(path):

@@ -70,7 +70,10 @@ def error(text: str) -> str:
     [
         ("temporel", ["'temporel'", *PLANNERS, *ALIASES]),
         ("temporal[horizont=3]", ["'horizont'", "horizon, transitions, target, waiting, spacing_rad"]),
-        ("temporal[transitions=leaps]", ["temporal[transitions]", "'leaps'", "'steps', 'layers', 'edges' or 'chained'"]),
+        (
+            "temporal[transitions=leaps]",
+            ["temporal[transitions]", "'leaps'", "'steps', 'layers', 'edges' or 'chained'"],
+        ),
         ("temporal-best[target=closest]", ["temporal-best", "temporal[target=...] only"]),
         ("temporal[horizon=0]", ["temporal[horizon]", "'0'", "greater than or equal to 1"]),
         ("temporal[horizon=2.5]", ["temporal[horizon]", "integer"]),

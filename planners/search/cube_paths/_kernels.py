@@ -19,11 +19,11 @@ from planners.search.layers._kernels import (
     add_layer,
     add_start,
     clear,
+    first_motion,
     is_possible,
     size,
     smoothest_path,
     some_motion,
-    with_motions,
 )
 from planners.search.temporal_graph._kernels import shortest
 from scenarios.kernels.jit import kernel
@@ -50,10 +50,10 @@ class Reading(NamedTuple):
 
 @kernel
 def _layer_at(layers, scene, box, numbers, cell, step):
-    """The layers with that of a cube at a step, and its number; ``numbers`` (h + 1, cells) holds those known."""
+    """Number of the layer of a cube at a step, which is added when first asked for; ``numbers`` (h + 1, cells)."""
     if numbers[step, cell] == NONE:
-        layers, numbers[step, cell] = add_layer(layers, scene, box.cubes[cell], step)
-    return layers, numbers[step, cell]
+        numbers[step, cell] = add_layer(layers, scene, box.cubes[cell], step)
+    return numbers[step, cell]
 
 
 @kernel
@@ -61,15 +61,14 @@ def _between(layers, scene, box, numbers, cell, other, step):
     """The layers of a cube at a step and of its neighbour at the next, with the motions between them.
 
     Returns:
-        The layers, the numbers of the two and that of the first motion.
+        The numbers of the two and that of the first motion.
     """
-    layers, before = _layer_at(layers, scene, box, numbers, cell, step)
-    layers, after = _layer_at(layers, scene, box, numbers, other, step + 1)
+    before = _layer_at(layers, scene, box, numbers, cell, step)
+    after = _layer_at(layers, scene, box, numbers, other, step + 1)
     w = box.width
     dx, dy = other // (w * w) - cell // (w * w), other // w % w - cell // w % w
     dz = other % w - cell % w
-    layers, block = with_motions(layers, scene, before, after, 9 * dx + 3 * dy + dz + STAY)
-    return layers, before, after, block
+    return before, after, first_motion(layers, scene, before, after, 9 * dx + 3 * dy + dz + STAY)
 
 
 @kernel
@@ -96,13 +95,13 @@ def shortest_path(layers, scene, box, numbers, edges, target, look):
         shut = NONE
         for e in path[:length]:
             if look and not holds[e]:
-                layers, before, after, block = _between(layers, scene, box, numbers, edges.u[e], edges.v[e], edges.t[e])
+                before, after, block = _between(layers, scene, box, numbers, edges.u[e], edges.v[e], edges.t[e])
                 holds[e] = some_motion(layers, scene, before, after, block)
                 if not holds[e]:
                     shut = e
                     break
         if shut == NONE:
-            return layers, vertices[: length + 1 if length > 0 else 0]
+            return vertices[: length + 1 if length > 0 else 0]
         d[shut] = math.inf
 
 
@@ -161,14 +160,14 @@ def chained_path(layers, scene, box, numbers, target, waiting):
         _, _, _, label = heapq.heappop(heap)
         cell, step, parent = cells[label], steps[label], parents[label]
         if step > 0:
-            layers, before, after, block = _between(layers, scene, box, numbers, cells[parent], cell, step - 1)
+            before, after, block = _between(layers, scene, box, numbers, cells[parent], cell, step - 1)
             if not _claim(layers, scene, before, after, block, parent, label, cell == target):
                 continue
             if cell == target:
                 path = np.empty(step + 1, np.int64)
                 for k in range(step, -1, -1):
                     path[k], label = cells[label], parents[label]
-                return layers, path
+                return path
         if step == horizon:
             continue
         for move in range(27):
@@ -188,7 +187,7 @@ def chained_path(layers, scene, box, numbers, target, waiting):
             # Of equally good ones first that which has come farthest.
             entry = (length + _straight(box, other, target), step + 1 + left, -step - 1, len(cells) - 1)
             heapq.heappush(heap, entry)
-    return layers, np.empty(0, np.int64)
+    return np.empty(0, np.int64)
 
 
 @kernel
@@ -209,17 +208,17 @@ def plan(layers, scene, goal, horizon, reading):
     clear(layers)
     box = box_about(scene, goal, horizon)
     numbers, vertices = np.full((horizon + 1, box.cubes.shape[0]), NONE), np.empty(0, np.int64)
-    layers, start = add_start(layers, scene)
+    start = add_start(layers, scene)
     if reading.transitions != EDGES:  # Algorithm 1 is told the cube where the arm is, not its configuration
         numbers[0, box.here] = start
     for candidate in box.order if reading.reachable else np.array([closest_cube(box, scene)]):
         if reading.transitions == CHAINED:
-            layers, vertices = chained_path(layers, scene, box, numbers, candidate, reading.waiting)
+            vertices = chained_path(layers, scene, box, numbers, candidate, reading.waiting)
         else:
             edges, reached = edges_towards(box, layers, scene, candidate, reading.waiting)
             if reached:
                 look = reading.transitions == EDGES
-                layers, vertices = shortest_path(layers, scene, box, numbers, edges, candidate, look)
+                vertices = shortest_path(layers, scene, box, numbers, edges, candidate, look)
         if vertices.shape[0] > 0:
             break
     steps = vertices.shape[0] - 1
@@ -228,9 +227,8 @@ def plan(layers, scene, goal, horizon, reading):
     numbers[0, box.here] = start
     chain, blocks = np.zeros(steps + 1, np.int64), np.empty(steps, np.int64)
     for step in range(steps):
-        layers, chain[step], chain[step + 1], blocks[step] = _between(
-            layers, scene, box, numbers, vertices[step], vertices[step + 1], step
-        )
+        a, b = vertices[step], vertices[step + 1]
+        chain[step], chain[step + 1], blocks[step] = _between(layers, scene, box, numbers, a, b, step)
     look = reading.transitions != STEPS or scene.bend_rate < math.inf
     rows = smoothest_path(layers, scene, chain, blocks, look)
     return box.cubes[vertices], layers.configurations.states[rows]

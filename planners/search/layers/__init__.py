@@ -1,11 +1,14 @@
 """The layered graph of configurations over a path of cubes (paper, section II-E)."""
 
+from collections.abc import Callable
+from typing import TypeVar
+
 import numpy as np
 
 from planners.search.certificate._kernels import HALVINGS, Stack
 from planners.search.configurations._kernels import memo_size
 from planners.search.layers import _kernels
-from planners.search.layers._kernels import Configurations, Layers, Motions
+from planners.search.layers._kernels import Configurations, Full, Layers, Motions
 from planners.search.scene import Scene
 from scenarios.arm import FloatArray
 from scenarios.kernels.kinematics import ARC_SIZE
@@ -13,23 +16,25 @@ from scenarios.kernels.kinematics import ARC_SIZE
 CAPACITY = 1024
 """Configurations for which there is room at first."""
 
+Answer = TypeVar("Answer")
 
-def empty_layers(n_sections: int, n_bends: int, horizon: int) -> Layers:
+
+def empty_layers(n_sections: int, n_bends: int, horizon: int, capacity: int = CAPACITY) -> Layers:
     """Room for the layers of a solve of ``horizon`` steps with a lattice of ``n_bends``."""
     n, dof = n_sections, 2 * n_sections
     return Layers(
         Configurations(
-            codes=np.empty(CAPACITY, np.int64),
-            digits=np.empty((CAPACITY, n), np.int64),
-            states=np.empty((CAPACITY, dof)),
-            arcs=np.empty((CAPACITY, n, ARC_SIZE)),
-            gaps=np.empty((CAPACITY, n)),
-            is_laid_out=np.empty(CAPACITY, np.bool_),
-            labels=np.empty(CAPACITY, np.int64),
+            codes=np.empty(capacity, np.int64),
+            digits=np.empty((capacity, n), np.int64),
+            states=np.empty((capacity, dof)),
+            arcs=np.empty((capacity, n, ARC_SIZE)),
+            gaps=np.empty((capacity, n)),
+            is_laid_out=np.empty(capacity, np.bool_),
+            labels=np.empty(capacity, np.int64),
         ),
-        Motions(weights=np.empty(16 * CAPACITY), answers=np.empty(16 * CAPACITY, np.int8)),
-        spans=np.empty((64, 3), np.int64),
-        blocks=np.empty((64, 27), np.int64),
+        Motions(weights=np.empty(32 * capacity), answers=np.empty(32 * capacity, np.int8)),
+        spans=np.empty((capacity // 4, 3), np.int64),
+        blocks=np.empty((capacity // 4, 27), np.int64),
         memo=np.empty((horizon + 1, memo_size(n_bends, n)), np.int8),
         counts=np.zeros(5, np.int64),
         stack=Stack(
@@ -42,6 +47,16 @@ def empty_layers(n_sections: int, n_bends: int, horizon: int) -> Layers:
     )
 
 
+def call(kernel: Callable[..., Answer], layers: Layers, scene: Scene, *others: object) -> tuple[Layers, Answer]:
+    """What ``kernel`` answers, called again with twice the room as long as it has too little; and the layers used."""
+    while True:
+        try:
+            return layers, kernel(layers, scene, *others)
+        except Full:
+            capacity, n_sections = layers.configurations.digits.shape
+            layers = empty_layers(n_sections, len(scene.space.bends_rad), len(layers.memo) - 1, 2 * capacity)
+
+
 class LayeredGraph:
     """Layers of free configurations, one per step; every configuration has an edge to every one in the next layer."""
 
@@ -49,7 +64,7 @@ class LayeredGraph:
         """Take the path's cubes, the arm's own first; at step k the obstacles of ``scene`` are where they are then."""
         layers = empty_layers(scene.space.n_sections, len(scene.space.bends_rad), scene.horizon)
         self._scene = scene
-        self._layers, self._chain, self._blocks = _kernels.layered_graph(layers, scene, np.array(cubes))
+        self._layers, (self._chain, self._blocks) = call(_kernels.layered_graph, layers, scene, np.array(cubes))
 
     @property
     def state_checks(self) -> int:

@@ -1,8 +1,7 @@
 """Layers of free configurations and the motions between them (paper, section II-E).
 
 A layer holds the free configurations of one cube at one step. A motion between two layers is looked at when a search
-wants it, and what was found out is remembered until the next solve. Arrays grow by making larger ones, so whatever may
-add to the layers returns them. ``scene`` is a ``search.scene.Scene``.
+wants it, and what was found out is remembered until the next solve. ``scene`` is a ``search.scene.Scene``.
 """
 
 import math
@@ -23,6 +22,10 @@ CURRENT = -1  # stands for the arm's present configuration where a code is expec
 UNASKED, POSSIBLE, BLOCKED = 0, 1, 2  # what is known of a motion
 N_LAYERS, N_CONFIGURATIONS, N_MOTIONS, STATE_CHECKS, MOTION_CHECKS = range(5)  # entries of ``Layers.counts``
 STEP, FIRST, END = range(3)  # columns of ``Layers.spans``
+
+
+class Full(Exception):
+    """There is too little room: the solve is to be made again with more."""
 
 
 class Configurations(NamedTuple):
@@ -116,29 +119,6 @@ def clear(layers):
     layers.memo[:] = 0
 
 
-@kernel
-def _grown(array, rows):
-    """A copy of ``array`` with room for ``rows`` rows, and for twice as many as it has."""
-    out = np.empty((max(rows, 2 * array.shape[0]),) + array.shape[1:], array.dtype)  # noqa: RUF005  numba knows no *
-    out[: array.shape[0]] = array
-    return out
-
-
-@kernel
-def _with_room(layers, more):
-    """The layers with room for one more, of ``more`` configurations."""
-    c, spans, blocks = layers.configurations, layers.spans, layers.blocks
-    rows = layers.counts[N_CONFIGURATIONS] + more
-    if rows > c.codes.shape[0]:
-        c = Configurations(
-            _grown(c.codes, rows), _grown(c.digits, rows), _grown(c.states, rows),
-            _grown(c.arcs, rows), _grown(c.gaps, rows), _grown(c.is_laid_out, rows), _grown(c.labels, rows),
-        )  # fmt: skip
-    if layers.counts[N_LAYERS] == spans.shape[0]:
-        spans, blocks = _grown(spans, 0), _grown(blocks, 0)
-    return Layers(c, layers.motions, spans, blocks, layers.memo, layers.counts, layers.stack, layers.change)
-
-
 @bare_kernel
 def _append(layers, scene, code):
     """Append a configuration."""
@@ -158,38 +138,37 @@ def _append(layers, scene, code):
     layers.counts[N_CONFIGURATIONS] = k + 1
 
 
-@kernel
+@bare_kernel
 def _open_layer(layers, step, more):
-    """The layers with an empty one at their end, which has room for ``more`` configurations, and its number."""
-    layers = _with_room(layers, more)
+    """Add an empty layer that is to have up to ``more`` configurations; returns its number."""
     number, first = layers.counts[N_LAYERS], layers.counts[N_CONFIGURATIONS]
+    if number == layers.spans.shape[0] or first + more > layers.configurations.codes.shape[0]:
+        raise Full
     layers.counts[N_LAYERS] += 1
     layers.spans[number, STEP], layers.spans[number, FIRST], layers.spans[number, END] = step, first, first
-    layers.blocks[number] = NONE
-    return layers, number
+    for move in range(layers.blocks.shape[1]):
+        layers.blocks[number, move] = NONE
+    return number
 
 
-@kernel
+@bare_kernel
 def add_start(layers, scene):
-    """Add the layer at step 0 that holds the present configuration alone; returns the layers and its number."""
-    layers, number = _open_layer(layers, 0, 1)
+    """Add the layer at step 0 that holds the present configuration alone; returns its number."""
+    number = _open_layer(layers, 0, 1)
     _append(layers, scene, CURRENT)
     layers.spans[number, END] += 1
-    return layers, number
+    return number
 
 
 @kernel
 def add_layer(layers, scene, cube, step):
-    """Add the free configurations of ``cube``, -1 for one off the grid, at ``step``.
+    """Add the free configurations of ``cube``, -1 for one off the grid, at ``step``; returns the layer's number.
 
     The present configuration counts as one of its own cube's, before the others.
-
-    Returns:
-        The layers and the number of the new one.
     """
     space, is_current = scene.space, cube == scene.cube
     first, end = (space.offsets[cube], space.offsets[cube + 1]) if cube >= 0 else (0, 0)
-    layers, number = _open_layer(layers, step, end - first + 1)
+    number = _open_layer(layers, step, end - first + 1)
     centers, reach = scene.steps.centers_m[step], scene.steps.reach_m[step]
     arcs, memo = layers.stack.arcs[0], layers.memo[step]
     if is_current and is_free(scene.q, scene.section_length, centers, reach, arcs):
@@ -199,7 +178,7 @@ def add_layer(layers, scene, cube, step):
             _append(layers, scene, space.codes[k])
     layers.spans[number, END] = layers.counts[N_CONFIGURATIONS]
     layers.counts[STATE_CHECKS] += end - first + (1 if is_current else 0)
-    return layers, number
+    return number
 
 
 @bare_kernel
@@ -209,22 +188,19 @@ def size(layers, number):
 
 
 @kernel
-def with_motions(layers, scene, before, after, move):
-    """The layers with all motions from layer ``before`` to layer ``after``, its neighbour in direction ``move``.
+def first_motion(layers, scene, before, after, move):
+    """Number of the first motion from layer ``before`` to layer ``after``, its neighbour in direction ``move``.
 
-    Returns:
-        The layers and the number of the first motion: that from the a-th to the b-th configuration is
-        a * size(layers, after) + b further on.
+    That from the a-th to the b-th configuration is a * size(layers, after) + b further on. They are added, none of them
+    looked at, when first asked for.
     """
     if layers.blocks[before, move] != NONE:
-        return layers, layers.blocks[before, move]
+        return layers.blocks[before, move]
     c, m, block = layers.configurations, layers.motions, layers.counts[N_MOTIONS]
     end = block + size(layers, before) * size(layers, after)
     if end > m.answers.shape[0]:
-        m = Motions(_grown(m.weights, end), _grown(m.answers, end))
-        layers = Layers(c, m, layers.spans, layers.blocks, layers.memo, layers.counts, layers.stack, layers.change)
-    layers.blocks[before, move] = block
-    layers.counts[N_MOTIONS] = end
+        raise Full
+    layers.blocks[before, move], layers.counts[N_MOTIONS] = block, end
     m.answers[block:end] = UNASKED
     n, base, k = scene.space.n_sections, scene.space.bends_rad.shape[0], block
     change = np.empty((n, base + 1))
@@ -242,7 +218,7 @@ def with_motions(layers, scene, before, after, move):
                 weight += change[i, c.digits[b, i]]
             m.weights[k] = weight
             k += 1
-    return layers, block
+    return block
 
 
 @bare_kernel
@@ -363,16 +339,16 @@ def smoothest_path(layers, scene, chain, blocks, look):
 
 @kernel
 def layered_graph(layers, scene, cubes):
-    """Layers of the cubes on a path, (k,) numbers, one per step, and the motions between them.
+    """Add layers of the cubes on a path, (k,) numbers, one per step, and the motions between them.
 
     Returns:
-        The layers, their numbers and those of the first motions between them, as ``smoothest_path`` takes them.
+        Their numbers and those of the first motions between them, as ``smoothest_path`` takes them.
     """
     clear(layers)
     chain, blocks = np.empty(cubes.shape[0], np.int64), np.empty(cubes.shape[0] - 1, np.int64)
-    layers, chain[0] = add_start(layers, scene)
+    chain[0] = add_start(layers, scene)
     for step in range(1, cubes.shape[0]):
-        layers, chain[step] = add_layer(layers, scene, cubes[step], step)
+        chain[step] = add_layer(layers, scene, cubes[step], step)
         # One way on from each layer: any direction will do.
-        layers, blocks[step - 1] = with_motions(layers, scene, chain[step - 1], chain[step], 0)
-    return layers, chain, blocks
+        blocks[step - 1] = first_motion(layers, scene, chain[step - 1], chain[step], 0)
+    return chain, blocks

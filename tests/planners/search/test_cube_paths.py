@@ -11,7 +11,7 @@ from strategies import ARM
 from benchmarks import literal
 from planners.search.configurations import EnumeratedSpace, enumerated_space
 from planners.search.cube_paths import _kernels
-from planners.search.layers import empty_layers
+from planners.search.layers import call, empty_layers
 from planners.search.scene import scene_of
 
 TRANSITIONS = {name: number for number, name in enumerate(("steps", "layers", "edges", "chained"))}
@@ -39,7 +39,7 @@ def test_it_answers_as_the_literal_reading_does(
         scene = scene_of(ARM, space, q, 0.0, world, horizon)
         reading = _kernels.Reading(TRANSITIONS[transitions], target == "reachable", True)
         layers = empty_layers(3, len(space.bends_rad), horizon)
-        path, states = _kernels.plan(layers, scene, space.cube_of(goal), horizon, reading)
+        _, (path, states) = call(_kernels.plan, layers, scene, space.cube_of(goal), horizon, reading)
         round_ = literal.Round(query)
         answer = round_.solve()
         if answer is None or math.isinf(answer.length_m):
@@ -63,12 +63,11 @@ def test_it_answers_as_the_literal_reading_does(
 def test_without_waiting_it_never_stays(space: EnumeratedSpace, transitions: str) -> None:
     stayed = {True: 0, False: 0}
     for seed, waiting in itertools.product(range(30), (True, False)):
-        q, goal, world = situation(seed, 3)
+        q, _, world = situation(seed, 3)
         reading = _kernels.Reading(TRANSITIONS[transitions], True, waiting)
         layers = empty_layers(3, len(space.bends_rad), 3)
-        path, _ = _kernels.plan(
-            layers, scene_of(ARM, space, q, 0.0, world, 3), space.cube_of(ARM.tip(q)), 3, reading
-        )
+        scene = scene_of(ARM, space, q, 0.0, world, 3)
+        _, (path, _) = call(_kernels.plan, layers, scene, space.cube_of(ARM.tip(q)), 3, reading)
         stayed[waiting] += sum(a == b for a, b in itertools.pairwise(path.tolist()))
     assert stayed[True] > 0
     assert stayed[False] == 0
@@ -79,8 +78,9 @@ def test_with_room_to_grow_the_answer_is_the_same() -> None:
     q, goal, world = situation(3, 6)
     scene = scene_of(ARM, fine, q, 0.0, world, 6)
     reading = _kernels.Reading(_kernels.CHAINED, True, True)
-    layers = empty_layers(3, len(fine.bends_rad), 6)
-    first = _kernels.plan(layers, scene, fine.cube_of(goal), 6, reading)
+    scant = empty_layers(3, len(fine.bends_rad), 6, capacity=8)
+    layers, first = call(_kernels.plan, scant, scene, fine.cube_of(goal), 6, reading)
+    assert len(layers.configurations.codes) > 8
     again = _kernels.plan(layers, scene, fine.cube_of(goal), 6, reading)
     for one, other in zip(first, again, strict=True):
         np.testing.assert_array_equal(one, other)

@@ -16,7 +16,7 @@ from twins.cubes import by_cube, cube_of, is_free, layered_graph, orientation_ch
 from planners.search.certificate._kernels import Stack, is_motion_free
 from planners.search.configurations import EnumeratedSpace, enumerated_space
 from planners.search.cubes import temporal_cubes_graph
-from planners.search.layers import LayeredGraph, _kernels, empty_layers
+from planners.search.layers import LayeredGraph, _kernels, call, empty_layers
 from planners.search.scene import Scene, frozen, scene_of
 from planners.search.temporal_graph.graph import Window
 from scenarios import SampledWorld, is_motion_valid, make_world
@@ -158,9 +158,9 @@ def test_some_motion_by_all_of_them(space: EnumeratedSpace, seed: int) -> None:
     scene, cubes = a_path(space, seed, 2)
     layers = empty_layers(3, len(space.bends_rad), 2)
     _kernels.clear(layers)
-    layers, before = _kernels.add_layer(layers, scene, cubes[1], 1)
-    layers, after = _kernels.add_layer(layers, scene, cubes[min(2, len(cubes) - 1)], 2)
-    layers, block = _kernels.with_motions(layers, scene, before, after, 0)
+    before = _kernels.add_layer(layers, scene, cubes[1], 1)
+    after = _kernels.add_layer(layers, scene, cubes[min(2, len(cubes) - 1)], 2)
+    block = _kernels.first_motion(layers, scene, before, after, 0)
     some = _kernels.some_motion(layers, scene, before, after, block)
     (_, first, end), (_, begin, last) = layers.spans[before], layers.spans[after]
     states = layers.configurations.states
@@ -172,21 +172,15 @@ def test_some_motion_by_all_of_them(space: EnumeratedSpace, seed: int) -> None:
     assert layers.counts[_kernels.MOTION_CHECKS] <= len(every)
 
 
-def test_there_is_room_for_more_than_there_was_at_first(space: EnumeratedSpace) -> None:
+def test_where_room_is_short_the_answer_is_the_same(space: EnumeratedSpace) -> None:
     scene, cubes = a_path(space, 0, 2)
-    occupied = np.flatnonzero(np.diff(space.offsets))[:400]
-    layers = empty_layers(3, len(space.bends_rad), 2)
-    _kernels.clear(layers)
-    numbers = []
-    for cube in [*cubes, *occupied]:
-        layers, number = _kernels.add_layer(layers, scene, int(cube), 1)
-        numbers.append(number)
-    assert layers.counts[_kernels.N_CONFIGURATIONS] > 100
-    assert numbers == list(range(len(numbers)))
-    for number, cube in zip(numbers, [*cubes, *occupied], strict=True):
-        _, first, end = layers.spans[number]
-        for state in layers.configurations.states[first:end]:
-            assert space.cube_of(ARM.tip(state)) == cube
+    scant = empty_layers(3, len(space.bends_rad), 2, capacity=4)
+    layers, (chain, blocks) = call(_kernels.layered_graph, scant, scene, np.array(cubes))
+    assert len(layers.configurations.codes) > 4
+    rows = _kernels.smoothest_path(layers, scene, chain, blocks, True)
+    np.testing.assert_array_equal(
+        layers.configurations.states[rows], LayeredGraph(scene, cubes).smoothest_path(look=True)
+    )
 
 
 def test_obstacles_are_read_at_whole_seconds_from_now(space: EnumeratedSpace) -> None:
