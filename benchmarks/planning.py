@@ -13,33 +13,39 @@ from benchmarks.timing import Line, cpu_seconds, seconds_per_call
 from planners.search.cubes import temporal_cubes_graph
 
 TOLERANCE = 1e-9
+NEAREST_OF_ALL, NEAREST_REACHED = "closest", "reachable"
+READINGS = (("t3's reading", "edges", NEAREST_OF_ALL), ("temporal-best's", "chained", NEAREST_REACHED))
 
 
 def against_literal(quick: bool) -> list[Line]:
     """Same queries, same answers, both timed; raises AssertionError where an answer differs."""
-    few = list(itertools.islice(queries.along(queries.scenarios(5, 1)[0], 3), 2 if quick else 8))
-    fast, slow = np.array([_ratio(query) for query in few]).T
-    lines = [
-        Line("h = 3: queries with the same answers", len(few), "queries"),
-        Line("h = 3: literal reading, CPU time of a query, median", 1e3 * float(np.median(slow)), "ms"),
-        Line("h = 3: planner's search, CPU time of a query, median", 1e3 * float(np.median(fast)), "ms"),
-        Line("h = 3: literal / planner, median", float(np.median(slow / fast)), "x", ">= 500"),
-    ]
-    deep = [
-        query
-        for n in ((6,) if quick else (1, 6))
-        for query in itertools.islice(queries.along(queries.scenarios(n, 1)[0], 10), 1 if quick else None)
-    ]
-    fast, slow = np.array([_ratio(query) for query in deep]).T
-    many = [q for n in (1, 3, 5, 6) for s in queries.scenarios(n, 2 if quick else 10) for q in queries.along(s, 10)]
-    solves = [seconds_per_call([partial(queries.solve, query)], 0.0, rounds=2)[0] for query in many]
-    return [
-        *lines,
-        Line("h = 10: queries with the same answers", len(deep), "queries"),
-        Line("h = 10: literal / planner, median", float(np.median(slow / fast)), "x"),
-        Line("h = 10: planner's search, CPU time, median", 1e3 * float(np.median(solves)), "ms", "<= 20"),
-        Line("h = 10: planner's search, CPU time, 95th percentile", 1e3 * float(np.percentile(solves, 95)), "ms"),
-    ]
+    lines = []
+    for name, transitions, target in READINGS:
+        few = [
+            query
+            for scenario in queries.scenarios(5, 1 if quick else 3)
+            for query in itertools.islice(queries.along(scenario, 2, transitions, target), 1 if quick else 3)
+        ]
+        fast, slow = np.array([_ratio(query) for query in few]).T
+        lines += [
+            Line(f"{name}, h = 2: queries with the same answers", len(few), "queries"),
+            Line(f"{name}, h = 2: literal, CPU time of a query, median", float(np.median(slow)), "s"),
+            Line(f"{name}, h = 2: literal / planner, median", float(np.median(slow / fast)), "x", ">= 500"),
+        ]
+        for horizon, target_ms in ((3, "<= 1" if transitions == "edges" else "<= 2"), (6, "")):
+            many = [
+                query
+                for n in (1, 3, 5, 6)
+                for scenario in queries.scenarios(n, 2 if quick else 10)
+                for query in queries.along(scenario, horizon, transitions, target)
+            ]
+            times = [seconds_per_call([partial(queries.solve, query)], 0.0, rounds=2)[0] for query in many]
+            title = f"{name}, h = {horizon}: search, CPU time"
+            lines += [
+                Line(f"{title}, median", 1e3 * float(np.median(times)), "ms", target_ms),
+                Line(f"{title}, 95th percentile", 1e3 * float(np.percentile(times, 95)), "ms"),
+            ]
+    return lines
 
 
 def growth(quick: bool) -> list[Line]:
@@ -61,27 +67,29 @@ def growth(quick: bool) -> list[Line]:
 
 def _ratio(query: literal.Query) -> tuple[float, float]:
     """CPU seconds of the planner's search and of the literal one, their answers compared."""
-    answers: list[literal.Answer | None] = []
-    slow = cpu_seconds(lambda: answers.append(literal.solve(query)))
     solved = queries.solve(query)
-    assert (answers[0] is None) == (solved is None), "one finds a path where the other finds none"
-    if answers[0] is not None and solved is not None:
-        _compare(query, answers[0], solved)
+    slow = cpu_seconds(partial(_compare, query, solved))
     return seconds_per_call([lambda: queries.solve(query)], 0.02, rounds=5)[0], slow
 
 
-def _compare(query: literal.Query, answer: literal.Answer, solved: queries.Solved) -> None:
+def _compare(query: literal.Query, solved: queries.Solved) -> None:
+    """Read the query literally, and compare what comes out."""
+    algorithm = literal.Round(query)
+    answer = algorithm.solve()
+    if answer is None or math.isinf(answer.length_m):
+        assert not solved.cubes, "a path where there is none"
+        return
     side = 2 * query.space.half
     cubes = [(c // (side * side), c // side % side, c % side) for c in solved.cubes]
-    goal = query.space.cube_of(query.goal_m)
-    there = (goal // (side * side), goal // side % side, goal % side)
-    squared = sum((a - b) ** 2 for a, b in zip(cubes[-1], there, strict=True))
-    assert squared == answer.squared_to_goal, "q_b: another distance to the goal"
-    assert math.isclose(solved.length_m, answer.length_m, abs_tol=TOLERANCE), "cube path: another cost"
-    same = literal.smoothest(query, cubes)
-    ours, theirs = (literal.path_smoothness(path) for path in (solved.configurations_rad, same))
-    assert math.isclose(ours, theirs, abs_tol=TOLERANCE), "layered path: another smoothness"
+    assert algorithm.squared(cubes[-1]) == answer.squared_to_goal, "q_b: another distance to the goal"
+    length = math.fsum(query.space.cube_m * math.dist(a, b) for a, b in itertools.pairwise(cubes))
+    assert math.isclose(length, answer.length_m, abs_tol=TOLERANCE), "cube path: another cost"
+    same = algorithm.smoothest(cubes)
+    assert (same is None) == (not len(solved.configurations_rad)), "layered graph: a path where there is none"
+    if same is not None:
+        ours, theirs = (literal.path_smoothness(path) for path in (solved.configurations_rad, same))
+        assert math.isclose(ours, theirs, abs_tol=TOLERANCE), "layered path: another smoothness"
 
 
 def _build(query: literal.Query) -> object:
-    return temporal_cubes_graph(query.arm, query.space, query.q, query.goal_m, query.obstacles, queries.WAITING)
+    return temporal_cubes_graph(queries.scene(query), query.goal_m, True, True)

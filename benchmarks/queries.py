@@ -9,36 +9,39 @@ import numpy as np
 
 from benchmarks.literal import Query
 from planners import Observation, build_predictor
+from planners.paper.temporal import READINGS
 from planners.search.configurations import enumerated_space
-from planners.search.cubes import LayeredGraph, LocalGraph, ObstacleSteps, temporal_cubes_graph
-from planners.search.temporal_graph.graph import Window
+from planners.search.cube_paths import _kernels
+from planners.search.layers import call, empty_layers
+from planners.search.scene import Scene, scene_of
 from scenarios import Scenario, generate
 from scenarios.arm import FloatArray
 
 SPACING_RAD = 0.5
-WAITING = True
 
 
 class Solved(NamedTuple):
     """What the planner finds for a query."""
 
-    local: LocalGraph
     cubes: list[int]
-    """Cube numbers along the path."""
-    length_m: float
+    """Cube numbers along the path, none where there is no path."""
     configurations_rad: FloatArray
+    """The smoothest path through them, shape (k, dof) [rad]; no rows where there is none."""
 
 
-def solve(query: Query) -> Solved | None:
-    """The search of ``planners.paper.temporal``, with what lies between its steps."""
-    arm, space, q, goal_m, obstacles = query
-    local = temporal_cubes_graph(arm, space, q, goal_m, obstacles, WAITING)
-    edges = local.graph.shortest_path(local.source, local.target, Window(0, 0), query.horizon)
-    if local.target < 0 or edges is None:
-        return None
-    cubes = [int(local.cubes[v]) for v in (local.source, *local.graph.v[edges])]
-    path = LayeredGraph(arm, space, q, cubes, obstacles).smoothest_path()
-    return None if path is None else Solved(local, cubes, float(local.graph.d[edges].sum()), path)
+def scene(query: Query) -> Scene:
+    """The query as the kernels take it."""
+    return scene_of(query.arm, query.space, query.q, query.now_s, query.world, query.horizon)
+
+
+def solve(query: Query) -> Solved:
+    """The search of ``planners.paper.temporal``."""
+    space = query.space
+    layers = empty_layers(space.n_sections, len(space.bends_rad), query.horizon)
+    reading = _kernels.Reading(READINGS[query.transitions], query.target == "reachable", True)
+    goal = space.cube_of(query.goal_m)
+    _, (cubes, path) = call(_kernels.plan, layers, scene(query), goal, query.horizon, reading)
+    return Solved(cubes.tolist(), path)
 
 
 def scenarios(n_obstacles: int, count: int) -> list[Scenario]:
@@ -46,10 +49,10 @@ def scenarios(n_obstacles: int, count: int) -> list[Scenario]:
     return generate("orbit", n_obstacles, count, seed=0)
 
 
-def along(scenario: Scenario, horizon: int) -> Iterator[Query]:
+def along(scenario: Scenario, horizon: int, transitions: str = "edges", target: str = "closest") -> Iterator[Query]:
     """The queries of one trial at ``horizon``: each begins where the path of the one before ended.
 
-    Ends when the goal's cube is reached, nothing can be reached, or time is up.
+    Ends when the goal is reached, there is no path, or time is up.
     """
     arm, q, now_s = scenario.arm, scenario.start, 0.0
     space, predictor = enumerated_space(arm, SPACING_RAD), build_predictor("cubic", scenario)
@@ -58,9 +61,9 @@ def along(scenario: Scenario, horizon: int) -> Iterator[Query]:
         centers = np.stack([obstacle.position(times) for obstacle in scenario.obstacles], axis=1)
         observation = Observation(times, centers, np.array([obstacle.radius_m for obstacle in scenario.obstacles]))
         world = predictor.predict(observation, float(horizon), 1.0).world(0.0)
-        query = Query(arm, space, q, scenario.goal, ObstacleSteps.from_world(world, now_s, horizon, arm.radius_m))
+        query = Query(arm, space, q, scenario.goal, world, now_s, transitions, target)
         yield query
         solved = solve(query)
-        if solved is None:
+        if not len(solved.configurations_rad):
             return
         q, now_s = solved.configurations_rad[-1], now_s + len(solved.configurations_rad) - 1.0

@@ -9,9 +9,7 @@ from ompl import base as ob
 from pydantic import BaseModel, ConfigDict
 
 from planners.problem import SpaceTimeProblem, TimedPath, TipGoal, read_state, write_path
-from planners.search.cubes import EdgeFilter
 from scenarios.arm import ContinuumArm, FloatArray
-from scenarios.scenario import STEP_S
 
 Commitment = Literal["path", "while_valid", "step"]
 """When a planner is asked again: at the end of its path (Algorithm 2), as soon as the newest prediction makes the rest
@@ -96,13 +94,6 @@ class ArmPlanner(ob.Planner):
         Raises:
             ScenarioError: A table of this planner's would be too large.
         """
-
-    def motion_filter(self, now_s: float) -> EdgeFilter | None:
-        """Which motions between two whole steps from ``now_s`` the validator allows; None where limits do not bind."""
-        if not self.problem.query.limits:
-            return None
-        check = self.problem.validator.check_all
-        return lambda k, before, after: check(before, now_s + k * STEP_S, after, now_s + (k + 1) * STEP_S)
 
     @abstractmethod
     def search(self, q: FloatArray, now_s: float, stop: Callable[[], bool]) -> TimedPath | None:

@@ -26,8 +26,9 @@ PLANNERS: dict[str, type[ArmPlanner]] = {planner.known_as(): planner for planner
 ALIASES: dict[str, tuple[str, dict[str, str]]] = {
     "t2": ("temporal", {"horizon": "2"}),
     "t3": ("temporal", {"horizon": "3"}),
+    "temporal-best": ("temporal", {"transitions": "chained", "target": "reachable"}),
 }
-"""The paper's names of a planner with settings."""
+"""Names of a planner with settings: the paper's, and its idea at its best."""
 
 
 def is_bound(label: str) -> bool:

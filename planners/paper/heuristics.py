@@ -1,11 +1,12 @@
 """The paper's two greedy heuristics (sections IV-A and IV-B): a static cube path, and what to do when it is blocked.
 
-Neither predicts. The next cube is blocked when an obstacle, where it is now, reaches into it, or when none of its
-configurations is free of the obstacles where they are now; otherwise the arm makes the smoothest transition into it.
+Neither predicts: the next cube is judged by the obstacles where they are now, and so are motions where they are looked
+at. Otherwise the arm makes the smoothest transition into the next cube.
 """
 
 from abc import abstractmethod
 from collections.abc import Callable
+from typing import Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
@@ -13,18 +14,30 @@ from pydantic import BaseModel, ConfigDict, Field
 from planners.base import ArmPlanner
 from planners.problem import SpaceTimeProblem, TimedPath
 from planners.search.configurations import enumerated_space, lattice_for
-from planners.search.cubes import LayeredGraph, ObstacleSteps
 from planners.search.cubes import _kernels as kernels
+from planners.search.layers import LayeredGraph
+from planners.search.scene import frozen, scene_of, without_obstacles
 from scenarios.arm import ContinuumArm, FloatArray
 from scenarios.scenario import STEP_S
 
 
 class HeuristicSettings(BaseModel):
-    """Settings of ``h`` and ``hs``."""
+    """Settings of ``hs``."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
+    blocked: Literal["cube", "body", "motion"] = Field(
+        default="body",
+        description="when a cube is blocked: an obstacle reaches into it, or none of its configurations is free, or no "
+        "motion to one",
+    )
     spacing_rad: float = Field(default=0.5, gt=0.05, le=3.0, description="spacing of the lattice of bends per section")
+
+
+class PurgingSettings(HeuristicSettings):
+    """Settings of ``h``."""
+
+    forget: bool = Field(default=False, description="whether purged cubes return and the path is found anew each step")
 
 
 class StaticPathPlanner(ArmPlanner):
@@ -42,6 +55,7 @@ class StaticPathPlanner(ArmPlanner):
     def __init__(self, problem: SpaceTimeProblem, settings: HeuristicSettings) -> None:
         """Plan on ``problem`` with the lattice in ``settings``."""
         super().__init__(problem, settings)
+        self._blocked = settings.blocked
         self._space = enumerated_space(problem.query.arm, settings.spacing_rad)
         self._purged = np.zeros(len(self._space.offsets) - 1, dtype=np.bool_)
         self._ahead: list[int] = []
@@ -80,14 +94,15 @@ class StaticPathPlanner(ArmPlanner):
 
     def _transition(self, q: FloatArray, now_s: float, here: int, following: int) -> FloatArray | None:
         """Present and next configuration (2, dof) [rad] of the smoothest transition; None when the cube is blocked."""
-        query, space = self.problem.query, self._space
-        obstacles = ObstacleSteps.frozen(query.world, query.arm.radius_m)
-        radii = obstacles.reach_m[0] - query.arm.radius_m
-        if kernels.contains_obstacle(following, space.half, space.cube_m, obstacles.centers_m[0], radii):
+        query, space, now = self.problem.query, self._space, frozen(self.problem.query.world)
+        if kernels.contains_obstacle(following, space.half, space.cube_m, now.centers_m[0], now.radii_m[0]):
             return None
-        layered = LayeredGraph(query.arm, space, q, [here, following], obstacles)
+        seen = without_obstacles(now) if self._blocked == "cube" else now
+        layered = LayeredGraph(scene_of(query.arm, space, q, now_s, seen, 1, query.limits), [here, following])
+        path = layered.smoothest_path(look=query.limits or self._blocked == "motion")
         self.state_checks += layered.state_checks
-        return layered.smoothest_path(self.motion_filter(now_s))
+        self.motion_checks += layered.motion_checks
+        return path
 
 
 class PurgingPlanner(StaticPathPlanner):
@@ -96,9 +111,22 @@ class PurgingPlanner(StaticPathPlanner):
     name = "h"
     summary = "static cube path, recomputed without the cubes found blocked"
     source = "first heuristic: paper, section IV-A"
+    settings_model = PurgingSettings
+
+    def __init__(self, problem: SpaceTimeProblem, settings: PurgingSettings) -> None:
+        """Plan on ``problem`` with the lattice in ``settings``."""
+        super().__init__(problem, settings)
+        self._forget = settings.forget
+
+    def search(self, q: FloatArray, now_s: float, stop: Callable[[], bool]) -> TimedPath | None:
+        """See ``StaticPathPlanner.search``."""
+        if self._forget:
+            self._purged[:] = False
+            self._ahead = []
+        return super().search(q, now_s, stop)
 
     def when_blocked(self, cube: int) -> bool:
-        """Purge the cube for good."""
+        """Purge the cube."""
         self._purged[cube] = True
         return False
 

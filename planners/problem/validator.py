@@ -1,7 +1,6 @@
 """The one motion validator. OMPL: callbacks must return a real ``bool`` and not hold the ``SpaceInformation``."""
 
 import numpy as np
-import numpy.typing as npt
 from ompl import base as ob
 
 from planners.problem import _kernels
@@ -41,17 +40,6 @@ class SpaceTimeMotionValidator(ob.MotionValidator):
         if query.shapes is None or not _kernels.motion_valid(q0, t0_s, q1, t1_s, *self._limits(), _NOTHING):
             return False
         return query.shapes.is_motion_valid(query.arm, q0, t0_s, q1, t1_s)
-
-    def check_all(self, before: FloatArray, t0_s: float, after: FloatArray, t1_s: float) -> npt.NDArray[np.bool_]:
-        """The same from each of ``before`` (A, dof) to each of ``after`` (B, dof), in one compiled call: (A, B).
-
-        So many motions are checked against spheres that hold the obstacles, whatever their shapes are.
-        """
-        self.checks += len(before) * len(after)
-        valid: npt.NDArray[np.bool_] = _kernels.motions_valid(
-            before, t0_s, after, t1_s, *self._limits(), self.query.world
-        )
-        return valid
 
     def _limits(self) -> tuple[float, ...]:
         """The arm and the tolerance, as the kernels take them."""

@@ -35,8 +35,8 @@ def parse_family(spec: str) -> tuple[str, Family]:
 def generate(family: str, n_obstacles: int, trials: int, seed: int, arm: ContinuumArm | None = None) -> list[Scenario]:
     """Draw scenarios; number k depends on family, obstacles, seed and k alone, never on what was drawn before.
 
-    A draw is rejected when the start is hit while the obstacles are observed, and for nothing else: a generator must
-    not remove hard cases.
+    A draw is rejected when the start is hit while the obstacles are observed (never with ``redraw=false``), and for
+    nothing else: a generator must not remove hard cases.
 
     Args:
         family: Family spec, such as ``orbit``.
@@ -77,7 +77,7 @@ def _draw(name: str, settings: Family, n_obstacles: int, k: int, seed: int, arm:
             goal_m=tuple(problem.goal.tolist()),
             obstacles=problem.obstacles,
         )
-        if start_is_free(scenario):
+        if not settings.redraw or start_is_free(scenario):
             return scenario
     raise ScenarioError(f"{name}: every one of 1000 draws hits the start, allowed settings that leave it free")
 

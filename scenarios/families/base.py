@@ -4,7 +4,7 @@ from abc import ABC, abstractmethod
 from typing import NamedTuple
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, Field
 
 from scenarios.arm import ContinuumArm, FloatArray
 from scenarios.obstacle import Obstacle
@@ -26,9 +26,11 @@ class Family(BaseModel, ABC):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
+    redraw: bool = Field(default=True, description="whether a draw whose start is hit is drawn anew")
+
     @abstractmethod
     def draw(self, rng: np.random.Generator, arm: ContinuumArm, n_obstacles: int) -> Problem:
-        """Draw start, goal and obstacles; the generator rejects the draw when the start is hit."""
+        """Draw start, goal and obstacles."""
 
 
 def random_configuration(rng: np.random.Generator, arm: ContinuumArm) -> FloatArray:

@@ -32,6 +32,7 @@ TESTS_OF_CERTIFICATE = tuple(
     )
 )
 AT_WORK, CUBES = "tests/suite/trial/test_planners_at_work.py::test_", "tests/planners/search/test_cubes.py::test_"
+LAYERS = "tests/suite/trial/test_planners_at_work.py::test_", "tests/planners/search/test_layers.py::test_"
 
 GROWTH, CONTACT = "tests/suite/store/test_growth.py::test_", "tests/suite/auditor/test_audit_contact.py::test_"
 
@@ -67,16 +68,16 @@ MUTANTS = (
     Mutant(
         "temporal's obstacles are a step late",
         "planners/paper/temporal.py",
-        "ObstacleSteps.from_world(query.world, now_s, ",
-        "ObstacleSteps.from_world(query.world, now_s - STEP_S, ",
+        "scene_of(query.arm, self._space, q, now_s, query.world",
+        "scene_of(query.arm, self._space, q, now_s - STEP_S, query.world",
         (AT_WORK + "temporals_states_are_free_of_the_obstacles_where_they_are_at_that_second",),
     ),
     Mutant(
         "the weight of a transition does not wrap theta",
-        "planners/search/cubes/_kernels.py",
+        "planners/search/layers/_kernels.py",
         "turn = min(turn, 2.0 * math.pi - turn)",
         "turn = abs(turn)",
-        (CUBES + "the_weight_is_the_papers_with_theta_wrapped", CUBES + "weights_by_hand"),
+        (LAYERS + "the_weight_is_the_papers_with_theta_wrapped", LAYERS + "weights_by_hand"),
     ),
     Mutant(
         "a planner that replans keeps a path that no longer holds",

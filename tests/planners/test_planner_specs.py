@@ -35,6 +35,12 @@ def test_t2_and_t3_are_temporal() -> None:
     assert parse_planner("t3[waiting=false]").settings.waiting is False
 
 
+def test_the_papers_reading_is_the_default_and_the_idea_at_its_best_has_a_name() -> None:
+    t3, best = parse_planner("t3").settings, parse_planner("temporal-best").settings
+    assert (t3.transitions, t3.target) == ("edges", "closest")
+    assert best == t3.model_copy(update={"transitions": "chained", "target": "reachable"})
+
+
 def test_blanks_do_not_matter() -> None:
     spec = parse_planner("  rrt [ range = 3 , goal_bias = 0.1 ] ")
     assert spec.label == "rrt[range=3,goal_bias=0.1]"
@@ -63,7 +69,12 @@ def error(text: str) -> str:
     ("text", "parts"),
     [
         ("temporel", ["'temporel'", *PLANNERS, *ALIASES]),
-        ("temporal[horizont=3]", ["'horizont'", "horizon, waiting, spacing_rad"]),
+        ("temporal[horizont=3]", ["'horizont'", "horizon, transitions, target, waiting, spacing_rad"]),
+        (
+            "temporal[transitions=leaps]",
+            ["temporal[transitions]", "'leaps'", "'steps', 'layers', 'edges' or 'chained'"],
+        ),
+        ("temporal-best[target=closest]", ["temporal-best", "temporal[target=...] only"]),
         ("temporal[horizon=0]", ["temporal[horizon]", "'0'", "greater than or equal to 1"]),
         ("temporal[horizon=2.5]", ["temporal[horizon]", "integer"]),
         ("temporal[horizon=x]", ["temporal[horizon]", "'x'"]),

@@ -43,13 +43,13 @@ class Situation(NamedTuple):
 
 
 class Algorithm1:
-    """The temporal cubes-graph, as many hops as there are predicted steps, read as the planner reads it.
+    """The temporal cubes-graph, as many hops as there are predicted steps, read at whole seconds.
 
     Edge (u, v, t) is there when u can be reached at t and v holds a free configuration at t + 1; q_b is the cube
-    nearest to the goal of all that can be reached.
+    nearest to the goal, of all that can be reached or of all within so many hops.
     """
 
-    def __init__(self, now: Situation, configurations, cubes, length, waiting):
+    def __init__(self, now: Situation, configurations, cubes, length, waiting, reachable):
         self.h = len(now.centers) - 1
         self.now, self.here = now, cube_of(now.tip)
         self.configurations, self.cubes, self.length = configurations, cubes, length
@@ -67,10 +67,19 @@ class Algorithm1:
         goal_cube = cube_of(now.goal)
         # Equally near ones: the first in the order of x, y, z.
         self.target = min(
-            set().union(*self.reached[1:]),
+            set().union(*self.reached[1:]) if reachable else self.within_hops(),
             key=lambda c: (sum((a - b) ** 2 for a, b in zip(c, goal_cube, strict=True)), c),
             default=None,
         )
+
+    def within_hops(self) -> set[Cube]:
+        """Cubes that hold configurations, free or not, as far as h moves from one to the next lead."""
+        found = {self.here}
+        for _ in range(self.h):
+            moves = list(itertools.product((-1, 0, 1), repeat=3))
+            near = {tuple(a + b for a, b in zip(u, move, strict=True)) for u in found for move in moves}
+            found |= {cube for cube in near if cube in self.cubes}
+        return found
 
     def is_open(self, cube: Cube, t: int) -> bool:
         if (cube, t) not in self.known:
@@ -86,10 +95,11 @@ class Algorithm1:
     def least_cost(self) -> float:
         """Cost of a cheapest path to q_b, by NetworkX in the time-expanded graph."""
         graph = nx.DiGraph()
+        graph.add_node((self.here, 0))
         for u, v, t in self.edges:
             graph.add_edge((u, t), (v, t + 1), d=CUBE_M * math.dist(u, v))
         costs = nx.single_source_dijkstra_path_length(graph, (self.here, 0), weight="d")
-        return min(cost for (cube, t), cost in costs.items() if cube == self.target and t > 0)
+        return min((cost for (cube, t), cost in costs.items() if cube == self.target and t > 0), default=math.inf)
 
 
 def orientation_change(q0, q1) -> float:

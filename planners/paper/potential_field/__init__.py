@@ -6,6 +6,7 @@ pseudo-inverses of the position Jacobians and summed. The paper follows Godage e
 published; these are ours.
 """
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -19,6 +20,8 @@ from scenarios.scenario import STEP_S
 
 SUBSTEPS = 10
 """Euler steps per second."""
+PUSH_PER_TIP_SPEED = 10.0
+"""The fastest push of an obstacle, by the speed at which the arm's tip may move."""
 
 
 class PotentialFieldSettings(BaseModel):
@@ -46,14 +49,16 @@ class PotentialFieldPlanner(ArmPlanner):
         """Follow the field with the gains in ``settings``."""
         super().__init__(problem, settings)
         s = settings
-        self._gains = (s.attraction, s.repulsion, s.influence_m, s.limit_gain, s.limit_margin_rad)
+        fastest_push = PUSH_PER_TIP_SPEED * problem.query.arm.max_tip_speed_m_s
+        self._gains = (s.attraction, s.repulsion, s.influence_m, fastest_push, s.limit_gain, s.limit_margin_rad)
 
     def search(self, q: FloatArray, now_s: float, stop: Callable[[], bool]) -> TimedPath | None:
         """One step of Euler integration; the field always says something."""
         del stop  # one bounded step
-        arm, world = self.problem.query.arm, self.problem.query.world
+        query, arm, world = self.problem.query, self.problem.query.arm, self.problem.query.world
+        rates = (arm.max_bend_rate_rad_s, arm.max_tip_speed_m_s) if query.limits else (math.inf, math.inf)
         path = _kernels.follow_field(
-            q, self.problem.query.goal_m, world.centers_m[0], world.radii_m[0], arm.section_length_m, arm.radius_m,
-            arm.max_bend_rad, arm.max_bend_rate_rad_s, arm.max_tip_speed_m_s, STEP_S / SUBSTEPS, SUBSTEPS, self._gains,
+            q, query.goal_m, world.centers_m[0], world.radii_m[0], arm.section_length_m, arm.radius_m,
+            arm.max_bend_rad, *rates, STEP_S / SUBSTEPS, SUBSTEPS, self._gains,
         )  # fmt: skip
         return TimedPath(now_s + STEP_S / SUBSTEPS * np.arange(SUBSTEPS + 1, dtype=np.float64), path)

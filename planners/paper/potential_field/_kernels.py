@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from planners.problem._kernels import fastest_tip, largest_bend_change
+from planners.search.rates._kernels import fastest_tip, largest_bend_change
 from scenarios.kernels.jit import kernel
 from scenarios.kernels.kinematics import ARC_SIZE, point_on_arc, position_jacobian, section_arcs
 
@@ -71,11 +71,12 @@ def add_limit_potential(q, max_bend, margin, gain, rate):
 
 @kernel
 def field_step(q, goal, centers, radii, section_length, arm_radius, max_bend, bend_rate, tip_speed, duration, gains):
-    """Follow the field for ``duration`` [s] from ``q`` (2n,), within the arm's rates; returns the new q.
+    """Follow the field for ``duration`` [s] from ``q`` (2n,), within the rates, inf for none; returns the new q.
 
-    ``gains``: attraction [1/s], repulsion [m^4/s], influence distance [m], actuator-limit gain and margin [rad].
+    ``gains``: attraction [1/s], repulsion [m^4/s], influence distance [m], the fastest that an obstacle may push [m/s],
+    actuator-limit gain and margin [rad].
     """
-    attraction, repulsion, influence, limit_gain, limit_margin = gains
+    attraction, repulsion, influence, fastest_push, limit_gain, limit_margin = gains
     n = q.shape[0] // 2
     jacobian, arcs, point = np.empty((3, 2 * n)), np.empty((n, ARC_SIZE)), np.empty(3)
     rate = np.zeros(2 * n)
@@ -90,8 +91,7 @@ def field_step(q, goal, centers, radii, section_length, arm_radius, max_bend, be
         rho = max(distance - arm_radius - radii[j], NEAREST_M)
         if rho < influence and distance > 0.0:
             push = repulsion * (1.0 / rho - 1.0 / influence) / (rho * rho)
-            # Rates are cut below anyway; a bound here keeps one near obstacle from drowning every other term.
-            push = min(push, 10.0 * tip_speed)
+            push = min(push, fastest_push)  # lest one near obstacle drown every other term
             position_jacobian(q, section_length, length, jacobian)
             add_task(jacobian, (point - centers[j]) * (push / distance), rate)
     add_limit_potential(q, max_bend, limit_margin, limit_gain, rate)

@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from planners.problem._kernels import fastest_tip, largest_bend_change, motion_valid
+from planners.problem._kernels import motion_valid
+from planners.search.rates._kernels import fastest_tip, largest_bend_change
 from scenarios.kernels.jit import kernel
 
 PIECE_RAD = 0.2  # an edge is cut into pieces of at most this bend, each as fast as the rates allow

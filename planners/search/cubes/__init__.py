@@ -1,6 +1,5 @@
-"""The temporal cubes-graph (Algorithm 1) and the layered graph of configurations (section II-E)."""
+"""The temporal cubes-graph (Algorithm 1), static cube paths, and when an obstacle is in a cube."""
 
-from planners.search.cubes.layered import EdgeFilter, LayeredGraph
-from planners.search.cubes.local import LocalGraph, ObstacleSteps, temporal_cubes_graph
+from planners.search.cubes.local import LocalGraph, temporal_cubes_graph
 
-__all__ = ["EdgeFilter", "LayeredGraph", "LocalGraph", "ObstacleSteps", "temporal_cubes_graph"]
+__all__ = ["LocalGraph", "temporal_cubes_graph"]

@@ -1,116 +1,170 @@
-"""Algorithm 1 of the paper and the layered graph, over an enumerated configuration space.
+"""Algorithm 1 of the paper, static cube paths, and when an obstacle is in a cube.
 
-Obstacles come as ``centers`` (h + 1, m, 3) [m] and ``reach`` (h + 1, m) [m], the obstacle's radius plus the arm's, one
-row per whole second from now on. ``space`` is an ``EnumeratedSpace``, in whose dense grid cubes are numbered.
+Vertices of a local graph number the box of (2 h + 1)^3 cubes about the arm's; ``scene`` is a ``search.scene.Scene``, in
+whose dense grid cubes are numbered.
 """
 
 import heapq
 import math
+from typing import NamedTuple
 
 import numpy as np
 
-from planners.search.configurations._kernels import FREE, HIT, UNKNOWN, is_code_free, is_free, memo_size
+from planners.search.configurations._kernels import FREE, HIT, UNKNOWN, is_code_free, is_free
+from planners.search.layers._kernels import STATE_CHECKS
+from planners.search.temporal_graph._kernels import NONE
 from scenarios.kernels.jit import kernel
-from scenarios.kernels.kinematics import ARC_SIZE
 
 STAY = 13  # of the 27 moves, the one to the cube itself
-CURRENT = -1  # stands for the arm's present configuration where a code is expected
+
+
+class Box(NamedTuple):
+    """The cubes within h hops, as far as the grid goes, and what is known of them."""
+
+    width: int
+    """2 h + 1."""
+    here: int
+    """Vertex of the arm's cube."""
+    cubes: np.ndarray
+    """Number of each vertex's cube, -1 off the grid, shape (width^3,)."""
+    order: np.ndarray
+    """Vertices from the goal outwards, shape (width^3,)."""
+    known: np.ndarray
+    """Whether each cube is open at each step, shape (h + 1, width^3)."""
+
+
+class Edges(NamedTuple):
+    """Edges (u, v, t, 1, d) of a temporal cubes-graph in order of t."""
+
+    u: np.ndarray
+    v: np.ndarray
+    t: np.ndarray
+    d: np.ndarray
+    """Lengths [m]."""
 
 
 @kernel
-def cube_is_open(cube, space, centers, reach, memo, arcs):
-    """Whether some enumerated configuration of ``cube`` is free, and the number looked at."""
-    first, end = space.offsets[cube], space.offsets[cube + 1]
-    for k in range(first, end):
-        if is_code_free(space.codes[k], space.n_sections, space.arc_table, centers, reach, memo, arcs):
-            return True, k - first + 1
-    return False, end - first
-
-
-@kernel
-def temporal_cubes_graph(q_now, cube_now, goal_cube, horizon, waiting, space, section_length, centers, reach):
-    """Algorithm 1: the temporal cubes-graph about ``cube_now`` as far as it leads to q_b, and q_b.
-
-    An edge (u, v, t, 1, d) exists when the arm can stand in u at t and in v at t + 1 without collision, that is, when
-    either cube holds a free configuration at that time; ``q_now`` counts as one of ``cube_now``'s. Candidates for q_b
-    are tried from the nearest to the goal outwards, each with the edges on which a path to it can lie: those from cubes
-    reached by t to cubes from which it is still within the hops that are left. Whether a cube is open is found out when
-    first asked. Vertices number the box of (2 horizon + 1)^3 cubes about ``cube_now``.
-
-    Returns:
-        u, v, t (M,) int64 in order of t; d (M,) [m]; the vertex of q_b, -1 if no cube can be reached; the number of
-        states checked.
-    """
-    side, width = 2 * space.half, 2 * horizon + 1
-    n_cells = width * width * width
-    here = (n_cells - 1) // 2
-    cubes, order = _box_by_distance(cube_now, goal_cube, horizon, side)
-    known = np.zeros((horizon, n_cells), np.int8)  # whether each cube is open at step + 1
-    memo = np.zeros((horizon, memo_size(space.bends_rad.shape[0], space.n_sections)), np.int8)
-    seen = np.zeros(n_cells, np.int64)  # the last round of the search that came to each cube
-    frontier, following = np.empty(n_cells, np.int64), np.empty(n_cells, np.int64)
-    arcs = np.empty((space.n_sections, ARC_SIZE))
-    u, v, t = np.empty(1024, np.int64), np.empty(1024, np.int64), np.empty(1024, np.int64)
-    d = np.empty(1024)
-    checks, rounds = 0, 0
-    for candidate in order:
-        gx, gy, gz = candidate // (width * width), candidate // width % width, candidate % width
-        n_edges, reached = 0, False
-        frontier[0], n_frontier = here, 1
-        for step in range(horizon):
-            hops_left = horizon - step - 1
-            n_following = 0
-            rounds += 1
-            for f in range(n_frontier):
-                cell = frontier[f]
-                x, y, z = cell // (width * width), cell // width % width, cell % width
-                if n_edges + 27 > d.shape[0]:
-                    u, v, t, d = _doubled(u), _doubled(v), _doubled(t), _doubled(d)
-                for move in range(27):
-                    dx, dy, dz = move // 9 - 1, move // 3 % 3 - 1, move % 3 - 1
-                    if max(abs(x + dx - gx), abs(y + dy - gy), abs(z + dz - gz)) > hops_left:
-                        continue
-                    if move == STAY and not waiting:
-                        continue
-                    other = cell + (dx * width + dy) * width + dz
-                    if known[step, other] == UNKNOWN:
-                        spheres, radii = centers[step + 1], reach[step + 1]
-                        is_open = other == here and is_free(q_now, section_length, spheres, radii, arcs)
-                        if not is_open and cubes[other] >= 0:
-                            is_open, looked = cube_is_open(cubes[other], space, spheres, radii, memo[step], arcs)
-                            checks += looked
-                        known[step, other] = FREE if is_open else HIT
-                    if known[step, other] == FREE:
-                        u[n_edges], v[n_edges], t[n_edges] = cell, other, step
-                        d[n_edges] = math.sqrt(abs(dx) + abs(dy) + abs(dz)) * space.cube_m
-                        n_edges += 1
-                        reached = reached or other == candidate
-                        if seen[other] != rounds:
-                            seen[other] = rounds
-                            following[n_following] = other
-                            n_following += 1
-            frontier, following, n_frontier = following, frontier, n_following
-        if reached:
-            return u[:n_edges], v[:n_edges], t[:n_edges], d[:n_edges], candidate, checks
-    return u[:0], v[:0], t[:0], d[:0], -1, checks
-
-
-@kernel
-def _box_by_distance(cube_now, goal_cube, horizon, side):
-    """Cube numbers of the box about ``cube_now``, -1 off the grid, and its vertices from the goal outwards.
+def box_about(scene, goal, horizon):
+    """The box about the arm's cube; ``goal`` is the number of the goal's.
 
     Distances are compared as whole numbers of cubes squared, so equal ones are equal and the lower vertex comes first.
     """
-    width = 2 * horizon + 1
-    x, y, z = cube_now // (side * side) - horizon, cube_now // side % side - horizon, cube_now % side - horizon
-    gx, gy, gz = goal_cube // (side * side), goal_cube // side % side, goal_cube % side
+    side, width, cube = 2 * scene.space.half, 2 * horizon + 1, scene.cube
+    x, y, z = cube // (side * side) - horizon, cube // side % side - horizon, cube % side - horizon
+    gx, gy, gz = goal // (side * side), goal // side % side, goal % side
     cubes, squared = np.empty(width**3, np.int64), np.empty(width**3, np.int64)
     for cell in range(width**3):
         i, j, k = x + cell // (width * width), y + cell // width % width, z + cell % width
         inside = min(i, j, k) >= 0 and max(i, j, k) < side
         cubes[cell] = (i * side + j) * side + k if inside else -1
         squared[cell] = (i - gx) ** 2 + (j - gy) ** 2 + (k - gz) ** 2
-    return cubes, np.argsort(squared, kind="mergesort")
+    order = np.argsort(squared, kind="mergesort")
+    return Box(width, (width**3 - 1) // 2, cubes, order, np.zeros((horizon + 1, width**3), np.int8))
+
+
+@kernel
+def is_occupied(box, scene, cell):
+    """Whether the cube holds a configuration, free or not."""
+    cube, offsets = box.cubes[cell], scene.space.offsets
+    return cell == box.here or (cube >= 0 and offsets[cube + 1] > offsets[cube])
+
+
+@kernel
+def closest_cube(box, scene):
+    """The paper's q_b (Algorithm 1, line 5): of all cubes of the graph the nearest to the goal, reachable or not.
+
+    Its cubes are those which breadth-first search in the cubes-graph finds within h hops (line 2).
+    """
+    width, horizon = box.width, box.known.shape[0] - 1
+    found = np.zeros(width**3, np.bool_)
+    queue, hops = np.empty(width**3, np.int64), np.zeros(width**3, np.int64)
+    queue[0], found[box.here] = box.here, True
+    first, end = 0, 1
+    while first < end and hops[queue[first]] < horizon:
+        cell = queue[first]
+        first += 1
+        for move in range(27):  # never off the box: it is h hops wide
+            other = cell + ((move // 9 - 1) * width + move // 3 % 3 - 1) * width + move % 3 - 1
+            if not found[other] and is_occupied(box, scene, other):
+                found[other], hops[other], queue[end] = True, hops[cell] + 1, other
+                end += 1
+    for cell in box.order:
+        if found[cell]:
+            return cell
+    return box.here
+
+
+@kernel
+def is_open(box, layers, scene, cell, step):
+    """Whether the arm can stand in the cube at ``step``: some configuration of it is free, or the present one.
+
+    Found out when first asked.
+    """
+    if box.known[step, cell] == UNKNOWN:
+        space, cube = scene.space, box.cubes[cell]
+        centers, reach, arcs = scene.steps.centers_m[step], scene.steps.reach_m[step], layers.stack.arcs[0]
+        found = cell == box.here and is_free(scene.q, scene.section_length, centers, reach, arcs)
+        if not found and cube >= 0:
+            for k in range(space.offsets[cube], space.offsets[cube + 1]):
+                layers.counts[STATE_CHECKS] += 1
+                found = is_code_free(
+                    space.codes[k], space.n_sections, space.arc_table, centers, reach, layers.memo[step], arcs
+                )
+                if found:
+                    break
+        box.known[step, cell] = FREE if found else HIT
+    return box.known[step, cell] == FREE
+
+
+@kernel
+def hops_between(box, cell, other):
+    """Number of moves from one cube to the other."""
+    w = box.width
+    x, y, z = cell // (w * w) - other // (w * w), cell // w % w - other // w % w, cell % w - other % w
+    return max(abs(x), abs(y), abs(z))
+
+
+@kernel
+def edges_towards(box, layers, scene, candidate, waiting):
+    """Edges of the temporal cubes-graph on which a path to ``candidate`` can lie, read at whole seconds.
+
+    That is, those between open cubes, from cubes reached by t to cubes from which it is still within the hops that are
+    left.
+
+    Returns:
+        The edges and whether the candidate is reached.
+    """
+    width, horizon = box.width, box.known.shape[0] - 1
+    gx, gy, gz = candidate // (width * width), candidate // width % width, candidate % width
+    u, v, t, d = np.empty(1024, np.int64), np.empty(1024, np.int64), np.empty(1024, np.int64), np.empty(1024)
+    seen = np.full(width**3, NONE)  # the last step at which the search came to each cube
+    frontier, following = np.empty(width**3, np.int64), np.empty(width**3, np.int64)
+    frontier[0], n_frontier, n_edges, reached = box.here, 1, 0, False
+    for step in range(horizon):
+        hops_left, n_following = horizon - step - 1, 0
+        for f in range(n_frontier):
+            cell = frontier[f]
+            x, y, z = cell // (width * width), cell // width % width, cell % width
+            if n_edges + 27 > d.shape[0]:
+                u, v, t, d = _doubled(u), _doubled(v), _doubled(t), _doubled(d)
+            for move in range(27):
+                dx, dy, dz = move // 9 - 1, move // 3 % 3 - 1, move % 3 - 1
+                if max(abs(x + dx - gx), abs(y + dy - gy), abs(z + dz - gz)) > hops_left:
+                    continue
+                if move == STAY and not waiting:
+                    continue
+                other = cell + (dx * width + dy) * width + dz
+                if is_open(box, layers, scene, other, step + 1):
+                    u[n_edges], v[n_edges], t[n_edges] = cell, other, step
+                    d[n_edges] = math.sqrt(abs(dx) + abs(dy) + abs(dz)) * scene.space.cube_m
+                    n_edges += 1
+                    reached = reached or other == candidate
+                    if seen[other] != step:
+                        seen[other] = step
+                        following[n_following] = other
+                        n_following += 1
+        frontier, following, n_frontier = following, frontier, n_following
+    return Edges(u[:n_edges], v[:n_edges], t[:n_edges], d[:n_edges]), reached
 
 
 @kernel
@@ -123,108 +177,17 @@ def _doubled(array):
 
 
 @kernel
-def section_change(u0, v0, u1, v1):
-    """Orientation change of one section between bending vectors (paper, section II-D), theta wrapped [rad].
+def temporal_cubes_graph(layers, scene, goal, horizon, waiting, reachable):
+    """Algorithm 1, read at whole seconds: the edges on which a path to q_b can lie, and q_b.
 
-    A straight section has no bending plane: its theta is taken to be the other's.
+    With ``reachable`` q_b is the nearest cube to the goal that can be reached, -1 if there is none.
     """
-    phi0, phi1 = math.hypot(u0, v0), math.hypot(u1, v1)
-    turn = 0.0
-    if phi0 > 1e-9 and phi1 > 1e-9:
-        turn = abs(math.atan2(v1, u1) - math.atan2(v0, u0))
-        turn = min(turn, 2.0 * math.pi - turn)
-    return math.hypot(turn, phi1 - phi0)
-
-
-@kernel
-def change_table(bends):
-    """Orientation change between all pairs of lattice bends: (B, B) [rad]."""
-    out = np.empty((bends.shape[0], bends.shape[0]))
-    for a in range(bends.shape[0]):
-        for b in range(bends.shape[0]):
-            out[a, b] = section_change(bends[a, 0], bends[a, 1], bends[b, 0], bends[b, 1])
-    return out
-
-
-@kernel
-def free_layer(cube, with_current, q_now, space, section_length, centers, reach):
-    """Free configurations of ``cube`` as codes, CURRENT first where asked for and free, and the number looked at."""
-    first, end = space.offsets[cube], space.offsets[cube + 1]
-    out = np.empty(end - first + 1, np.int64)
-    arcs = np.empty((space.n_sections, ARC_SIZE))
-    memo = np.zeros(memo_size(space.bends_rad.shape[0], space.n_sections), np.int8)
-    n = 0
-    if with_current and is_free(q_now, section_length, centers, reach, arcs):
-        out[0], n = CURRENT, 1
-    for k in range(first, end):
-        if is_code_free(space.codes[k], space.n_sections, space.arc_table, centers, reach, memo, arcs):
-            out[n] = space.codes[k]
-            n += 1
-    return out[:n], end - first + (1 if with_current else 0)
-
-
-@kernel
-def digits(codes, base, n):
-    """Lattice numbers (len(codes), n) of codes, first section first; ``base`` in every place for CURRENT."""
-    out = np.full((codes.shape[0], n), base, np.int64)
-    for a in range(codes.shape[0]):
-        code = codes[a]
-        if code != CURRENT:
-            for i in range(n - 1, -1, -1):
-                out[a, i] = code % base
-                code //= base
-    return out
-
-
-@kernel
-def changes_from(q_now, bends):
-    """Orientation change from each section of ``q_now`` (2n,) to every lattice bend: (n, B + 1) [rad].
-
-    The last column is the change from the present configuration to itself.
-    """
-    n, base = q_now.shape[0] // 2, bends.shape[0]
-    out = np.zeros((n, base + 1))
-    for i in range(n):
-        for b in range(base):
-            out[i, b] = section_change(q_now[2 * i], q_now[2 * i + 1], bends[b, 0], bends[b, 1])
-    return out
-
-
-@kernel
-def relax_layer(cost, before, after, from_now, table, possible):
-    """One round of Bellman-Ford between two layers: best cost of each configuration after, and where it comes from.
-
-    An edge costs its smoothness (paper, section II-D).
-
-    Args:
-        cost: Best cost of each configuration before, shape (A,), [rad].
-        before: Codes of the configurations before, shape (A,).
-        after: Codes of the configurations after, shape (C,).
-        from_now: ``changes_from`` the present configuration.
-        table: ``change_table`` of the lattice.
-        possible: Which edges there are, shape (A, C); (0, 0) for all.
-    """
-    n, base = from_now.shape[0], table.shape[0]
-    rows, columns = digits(before, base, n), digits(after, base, n)
-    best = np.full(after.shape[0], np.inf)
-    parent = np.full(after.shape[0], -1, np.int64)
-    change = np.empty((n, base + 1))
-    for a in range(rows.shape[0]):
-        for i in range(n):
-            row = rows[a, i]
-            for b in range(base):
-                change[i, b] = from_now[i, b] if row == base else table[row, b]
-            change[i, base] = from_now[i, row]
-        for b in range(columns.shape[0]):
-            if possible.shape[0] > 0 and not possible[a, b]:
-                continue
-            weight = 0.0
-            for i in range(n):
-                weight += change[i, columns[b, i]]
-            through = cost[a] + weight
-            if through < best[b]:
-                best[b], parent[b] = through, a
-    return best, parent
+    box = box_about(scene, goal, horizon)
+    for candidate in box.order if reachable else np.array([closest_cube(box, scene)]):
+        edges, reached = edges_towards(box, layers, scene, candidate, waiting)
+        if reached or not reachable:
+            return edges, candidate, box.cubes
+    return Edges(edges.u[:0], edges.v[:0], edges.t[:0], edges.d[:0]), -1, box.cubes
 
 
 @kernel

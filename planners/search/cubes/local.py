@@ -1,41 +1,16 @@
-"""Algorithm 1: the temporal cubes-graph about the cube that holds the tip."""
+"""Algorithm 1, read at whole seconds: the temporal cubes-graph about the cube that holds the tip."""
 
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from planners.search.configurations import EnumeratedSpace
 from planners.search.cubes import _kernels
+from planners.search.layers import empty_layers
+from planners.search.layers._kernels import STATE_CHECKS, clear
+from planners.search.scene import Scene
 from planners.search.temporal_graph.graph import TemporalGraph
-from scenarios.arm import ContinuumArm, FloatArray
-from scenarios.scenario import STEP_S
-from scenarios.world import SampledWorld
-
-
-class ObstacleSteps(NamedTuple):
-    """Where obstacles are at whole seconds from now on, ready for the kernels."""
-
-    centers_m: FloatArray
-    """Centres, shape (h + 1, m, 3), [m]; row 0 is now."""
-    reach_m: FloatArray
-    """Obstacle radius plus arm radius, shape (h + 1, m), [m]."""
-
-    @classmethod
-    def from_world(cls, world: SampledWorld, now_s: float, horizon: int, arm_radius_m: float) -> "ObstacleSteps":
-        """Read rows now, now + 1 s, ..., now + ``horizon`` s out of a world sampled each second or finer."""
-        last = len(world.centers_m) - 1
-        passed = (now_s + STEP_S * np.arange(horizon + 1) - world.start_s) / world.step_s
-        rows = np.clip(np.rint(passed).astype(int), 0, last)
-        return cls(
-            np.ascontiguousarray(world.centers_m[rows]), np.ascontiguousarray(world.radii_m[rows]) + arm_radius_m
-        )
-
-    @classmethod
-    def frozen(cls, world: SampledWorld, arm_radius_m: float) -> "ObstacleSteps":
-        """Obstacles as they are now, now and a step later: the view of a planner that does not predict."""
-        centers = np.repeat(world.centers_m[:1], 2, axis=0)
-        return cls(centers, np.repeat(world.radii_m[:1], 2, axis=0) + arm_radius_m)
+from scenarios.arm import FloatArray
 
 
 class LocalGraph(NamedTuple):
@@ -46,48 +21,28 @@ class LocalGraph(NamedTuple):
     source: int
     """Vertex of the current cube."""
     target: int
-    """Vertex of q_b, the reached cube nearest to the goal; -1 if no cube can be reached."""
+    """Vertex of q_b; -1 if no cube can be reached."""
     cubes: npt.NDArray[np.int64]
-    """Cube number of each vertex, shape ((2 h + 1)^3,)."""
+    """Cube number of each vertex, -1 off the grid, shape ((2 h + 1)^3,)."""
     state_checks: int
 
 
-def temporal_cubes_graph(
-    arm: ContinuumArm,
-    space: EnumeratedSpace,
-    q: FloatArray,
-    goal_m: FloatArray,
-    obstacles: ObstacleSteps,
-    waiting: bool,
-) -> LocalGraph:
-    """Build the temporal cubes-graph that extends as many hops as ``obstacles`` holds steps (paper, Algorithm 1).
+def temporal_cubes_graph(scene: Scene, goal_m: FloatArray, waiting: bool, reachable: bool) -> LocalGraph:
+    """Build the temporal cubes-graph of ``scene`` as far as it leads to q_b (paper, Algorithm 1).
 
-    The paper's q_b is the cube of the graph nearest to the goal; here the nearest among those that can be reached in
-    time, because the nearest of all may lie inside an obstacle.
+    An edge (u, v, t, 1, d) is there when v holds a free configuration at t + 1.
 
     Args:
-        arm: The arm.
-        space: Its enumerated configurations.
-        q: Present configuration, shape (dof,), [rad].
+        scene: Where the arm is and what it is shown.
         goal_m: Goal point, shape (3,), [m].
-        obstacles: Predicted obstacles at whole seconds.
         waiting: Whether a cube has an edge of cost 0 to itself.
+        reachable: Whether q_b is the cube nearest to the goal that can be reached, or simply the nearest.
     """
-    horizon = len(obstacles.centers_m) - 1
-    cube_now = space.cube_of(arm.tip(q))
-    u, v, t, d, target, checks = _kernels.temporal_cubes_graph(
-        q,
-        cube_now,
-        space.cube_of(goal_m),
-        horizon,
-        waiting,
-        space,
-        arm.section_length_m,
-        obstacles.centers_m,
-        obstacles.reach_m,
+    space, horizon = scene.space, scene.horizon
+    layers = empty_layers(space.n_sections, len(space.bends_rad), horizon)
+    clear(layers)
+    (u, v, t, d), target, cubes = _kernels.temporal_cubes_graph(
+        layers, scene, space.cube_of(goal_m), horizon, waiting, reachable
     )
-    width, side = 2 * horizon + 1, 2 * space.half
-    hops = np.arange(-horizon, horizon + 1)
-    cubes = cube_now + ((hops[:, None, None] * side + hops[:, None]) * side + hops).reshape(-1)
-    graph = TemporalGraph(width**3, u, v, t, np.ones_like(t), d)
-    return LocalGraph(graph, (width**3 - 1) // 2, int(target), cubes, int(checks))
+    graph = TemporalGraph(len(cubes), u, v, t, np.ones_like(t), d)
+    return LocalGraph(graph, (len(cubes) - 1) // 2, int(target), cubes, int(layers.counts[STATE_CHECKS]))

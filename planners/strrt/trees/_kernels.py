@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from planners.problem._kernels import least_duration, motion_valid, within_rates
+from planners.problem._kernels import least_duration, motion_valid
+from planners.search.rates._kernels import within_rates
 from scenarios.kernels.jit import kernel
 from scenarios.kernels.kinematics import section_arcs
 

@@ -8,7 +8,9 @@ from hypothesis import given, settings
 from strategies import ARM, configurations, random_configurations, seeds
 from twins.kinematics import backbone
 
+from planners import Observation, Session, parse_planner
 from planners.paper.potential_field import PotentialFieldSettings, _kernels
+from scenarios import generate
 from scenarios.kernels.kinematics import ARC_SIZE
 
 NOWHERE = np.array([[9.0, 9.0, 9.0]])
@@ -17,7 +19,8 @@ RADII = np.array([0.03])
 
 def follow(q: np.ndarray, goal: np.ndarray, center: np.ndarray, duration: float = 0.1, **settings: float) -> np.ndarray:
     s = PotentialFieldSettings(**settings)
-    gains = (s.attraction, s.repulsion, s.influence_m, s.limit_gain, s.limit_margin_rad)
+    fastest_push = 10.0 * ARM.max_tip_speed_m_s
+    gains = (s.attraction, s.repulsion, s.influence_m, fastest_push, s.limit_gain, s.limit_margin_rad)
     return _kernels.field_step(
         q, goal, np.atleast_2d(center).astype(float), RADII, ARM.section_length_m, ARM.radius_m, ARM.max_bend_rad,
         ARM.max_bend_rate_rad_s, ARM.max_tip_speed_m_s, duration, gains,
@@ -84,3 +87,21 @@ def test_it_never_outruns_or_overbends_the_arm(q: np.ndarray, other: np.ndarray,
     assert np.hypot(*(after - q).reshape(3, 2).T).max() <= ARM.max_bend_rate_rad_s * 0.1 * (1 + 1e-9)
     steps = ARM.tips(q + np.linspace(0, 1, 21)[:, None] * (after - q))
     assert np.linalg.norm(np.diff(steps, axis=0), axis=1).max() * 20 <= ARM.max_tip_speed_m_s * 0.1 * 1.01
+
+
+def test_rates_bind_it_where_limits_do() -> None:
+    scenario = generate("orbit", 1, 1, 3)[0]
+    times = np.arange(-scenario.observation_s, 0.5)
+    centers = np.stack([obstacle.position(times) for obstacle in scenario.obstacles], axis=1)
+    seen = Observation(times, centers, np.array([obstacle.radius_m for obstacle in scenario.obstacles]))
+    fastest = []
+    for limits in (True, False):
+        session = Session(parse_planner("pf"), scenario, predictor="cubic", limits=limits, seed=1)
+        plan = session.plan(scenario.start, 0.0, seen)
+        steps = np.linalg.norm(np.diff(ARM.tips(plan.configurations_rad), axis=0), axis=1)
+        fastest.append((steps / np.diff(plan.times_s)).max())
+    assert fastest[0] <= ARM.max_tip_speed_m_s
+    # Without limits the tip goes for the goal at the gain times its distance.
+    gap = np.linalg.norm(ARM.tip(scenario.start) - scenario.goal)
+    assert fastest[1] > 3 * ARM.max_tip_speed_m_s
+    assert fastest[1] == pytest.approx(0.5 * gap, rel=0.5)

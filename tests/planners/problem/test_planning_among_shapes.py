@@ -4,6 +4,7 @@ from ompl import base as ob
 
 from planners import Observation, Session, parse_planner
 from planners.problem import write_state
+from planners.problem._kernels import motion_valid
 from scenarios import Box, ContinuumArm, Line, Obstacle, Scenario
 from scenarios.world import positions
 
@@ -40,7 +41,7 @@ def test_checker_and_validator_decide_by_shapes_where_the_spheres_are_hit():
     write_state(state, np.zeros(6), 0.0)
     assert checker.isValid(state)
     assert 0.0 < checker.clearance(state) <= 0.475 - 0.002 - 0.45 - ARM.radius_m + 1e-9
-    assert not validator.check_all(still[:1], 0.0, still[1:], 1.0)[0, 0]
+    assert not motion_valid(still[0], 0.0, still[1], 1.0, *validator._limits(), query.world)  # by the spheres alone
     assert validator.check(still[0], 0.0, still[1], 1.0)
     assert validator.check(bent[0], 0.0, bent[1], 1.0)
     assert not validator.check(bent[1], 1.0, bent[0], 0.0)

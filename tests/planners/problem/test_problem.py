@@ -13,6 +13,7 @@ from strategies import ARM, configurations, random_configurations, seeds
 from planners.prediction import Prediction
 from planners.problem import Query, SpaceTimeProblem, TimedPath, _kernels, read_state, write_path, write_state
 from planners.problem.goals import GoalConfigurations
+from planners.search.rates._kernels import fastest_tip
 from scenarios import ContinuumArm, clearance, is_motion_valid, is_state_valid
 
 HORIZON_S = 30.0
@@ -132,7 +133,6 @@ def test_time_goes_forward(empty: SpaceTimeProblem, t1: float) -> None:
     q = np.full(6, 0.1)
     assert not empty.si.checkMotion(state_of(empty, q, 1.0), state_of(empty, q, t1))
     assert not empty.validator.check(q, 1.0, q, t1)
-    assert not empty.validator.check_all(q[None], 1.0, q[None], t1)[0, 0]
     assert empty.si.checkMotion(state_of(empty, q, 1.0), state_of(empty, q, 1.001))
 
 
@@ -143,20 +143,9 @@ def test_the_fastest_tip_is_hardly_underrated(seed: int, n: int, share: float) -
     q0, q1 = random_configurations(np.random.default_rng(seed), 2, n)
     q1 = q0 + share * (q1 - q0)
     speeds = [np.linalg.norm(arm.jacobian(q0 + s * (q1 - q0)) @ (q1 - q0)) for s in np.linspace(0, 1, 400)]
-    fastest = _kernels.fastest_tip(q0, q1, arm.section_length_m, math.inf)
+    fastest = fastest_tip(q0, q1, arm.section_length_m, math.inf)
     assert fastest <= max(speeds) * (1 + 1e-4)
     assert fastest >= 0.97 * max(speeds)
-
-
-def test_many_motions_at_once(crowded: SpaceTimeProblem) -> None:
-    rng = np.random.default_rng(4)
-    q = random_configurations(rng, 1)[0]
-    before, after = q + rng.normal(scale=0.01, size=(6, 6)), q + rng.normal(scale=0.03, size=(7, 6))
-    together = crowded.validator.check_all(before, 2.0, after, 3.0)
-    assert together.shape == (6, 7)
-    for a in range(6):
-        for b in range(7):
-            assert together[a, b] == crowded.validator.check(before[a], 2.0, after[b], 3.0)
 
 
 def test_checks_are_counted(crowded: SpaceTimeProblem) -> None:
@@ -165,9 +154,8 @@ def test_checks_are_counted(crowded: SpaceTimeProblem) -> None:
     states, motions = crowded.checker.checks, crowded.validator.checks
     crowded.si.isValid(state)
     crowded.si.checkMotion(state, state)
-    crowded.validator.check_all(np.zeros((2, 6)), 0.0, np.zeros((3, 6)), 1.0)
     assert crowded.checker.checks == states + 1
-    assert crowded.validator.checks == motions + 1 + 6
+    assert crowded.validator.checks == motions + 1
 
 
 def test_an_update_is_seen_by_checker_and_validator() -> None:

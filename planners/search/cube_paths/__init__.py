@@ -1,0 +1,1 @@
+"""Shortest temporal cube paths on which every motion was looked at that they depend on."""

@@ -1,0 +1,1 @@
+"""How fast a motion turns sections and moves the tip."""
