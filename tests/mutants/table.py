@@ -33,7 +33,6 @@ TESTS_OF_CERTIFICATE = tuple(
 )
 AT_WORK = "tests/suite/trial/test_planners_at_work.py::test_"
 CUBES, LAYERS = "tests/planners/search/test_cubes.py::test_", "tests/planners/search/test_layers.py::test_"
-LAYERS = "tests/suite/trial/test_planners_at_work.py::test_", "tests/planners/search/test_layers.py::test_"
 
 GROWTH, CONTACT = "tests/suite/store/test_growth.py::test_", "tests/suite/auditor/test_audit_contact.py::test_"
 
