@@ -40,7 +40,16 @@ class Plan(NamedTuple):
 class Session:
     """Owns every OMPL object of a trial; fresh per trial, so that equal seeds give equal paths."""
 
-    def __init__(self, spec: PlannerSpec, scenario: Scenario, *, predictor: str, limits: bool, seed: int) -> None:
+    def __init__(
+        self,
+        spec: PlannerSpec,
+        scenario: Scenario,
+        *,
+        predictor: str,
+        limits: bool,
+        seed: int,
+        margin: float | None = None,
+    ) -> None:
         """Set up ``spec`` for ``scenario``.
 
         Args:
@@ -49,6 +58,7 @@ class Session:
             predictor: Name of the predictor that stands between observations and planner.
             limits: Whether the motion limits bind planners whose paths may otherwise jump in shape.
             seed: Seed of all randomness in this trial.
+            margin: Standard deviations by which predicted obstacles are grown; the planner's own when None.
 
         Raises:
             SpecError: Unknown predictor.
@@ -58,7 +68,9 @@ class Session:
         self._iterations = getattr(settings, "iterations", None)
         self._horizon_s = kind.look_ahead_s(settings)
         self._step_s = kind.prediction_step_s
-        self._margin, self._largest_bound_m = kind.prediction_margin, kind.largest_bound_m
+        self._asked_margin = None if kind.is_bound else margin
+        self._margin = kind.prediction_margin if self._asked_margin is None else self._asked_margin
+        self._largest_bound_m = kind.largest_bound_m
         self._scenario, self._limits = scenario, limits
         self._predictor = build_predictor(kind.predictor_for(predictor), scenario)
         self._rng = np.random.default_rng(seed)
@@ -115,6 +127,7 @@ class Session:
             world if shapes is None else cover_world(*placed),
             self._limits,
             shapes,
+            self._asked_margin,
         )
 
     def _checks(self) -> tuple[int, int]:

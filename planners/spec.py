@@ -51,6 +51,10 @@ class PlannerSpec(NamedTuple):
         """Name of the predictor it works with when a run asks for ``asked``, or for each planner's own (None)."""
         return "truth" if self.is_bound else asked or self.predictor
 
+    def margin_for(self, asked: float | None) -> float:
+        """Margin by which its predicted obstacles are grown when a run asks for ``asked``, or for its own (None)."""
+        return self.prediction_margin if self.is_bound or asked is None else asked
+
 
 class Typed(NamedTuple):
     """A spec taken apart; nothing is loaded."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, TypedDict, Unpack
 
 import numpy as np
 import numpy.typing as npt
@@ -122,7 +122,7 @@ def run(
         fresh: Start over what the folder holds.
         keep_stale: Use rows that other code has made as they are.
         **conditions: Fields of ``suite.experiment.experiment.Experiment``: ``family``, ``arm``, ``obstacles``,
-            ``trials``, ``seed``, ``predictor``, ``limits``, ``noise_mm``, ``dropout``, ``scenario_files``.
+            ``trials``, ``seed``, ``predictor``, ``margin``, ``limits``, ``noise_mm``, ``dropout``, ``scenario_files``.
 
     Raises:
         SuiteError, SpecError, ScenarioError: Something asked for is not allowed; one line.
@@ -145,26 +145,30 @@ def load(folder: str | Path) -> Run:
     return Run(folder)
 
 
-def plan(
-    scenario: Scenario,
-    planner: PlannerLike,
-    *,
-    predictor: str | None = None,
-    limits: bool = False,
-    seed: int = 0,
-    noise_mm: float = 0.0,
-    dropout: float = 0.0,
-) -> Plan:
+class Conditions(TypedDict, total=False):
+    """Under which conditions a planner works."""
+
+    predictor: str | None
+    """Predictor of obstacle motion; the planner's own when None."""
+    margin: float | None
+    """Standard deviations by which predicted obstacles are grown; the planner's own when None."""
+    limits: bool
+    """Whether the planner has to keep to the arm's motion limits."""
+    seed: int
+    """Seed of the experiment, 0 when left out; the trial's derives from it as in a run."""
+    noise_mm: float
+    """Standard deviation of the noise on observed positions [mm]."""
+    dropout: float
+    """Probability that an observation is lost."""
+
+
+def plan(scenario: Scenario, planner: PlannerLike, **conditions: Unpack[Conditions]) -> Plan:
     """Ask a planner once, at the start of a scenario: obstacles observed up to t = 0, predicted, one solve.
 
     Args:
         scenario: The scenario.
-        planner: The planner.
-        predictor: Predictor of obstacle motion; the planner's own when None.
-        limits: Whether the planner has to keep to the arm's motion limits.
-        seed: Seed of the planner's randomness and of the noise.
-        noise_mm: Standard deviation of the noise on observed positions [mm].
-        dropout: Probability that an observation is lost.
+        planner: The planner; what it raises goes through.
+        **conditions: See ``Conditions``.
 
     Returns:
         Status, timed path (k,) [s] and (k, dof) [rad], solve time and checks.
@@ -172,31 +176,25 @@ def plan(
     Raises:
         SpecError: Unknown planner, setting or predictor.
     """
-    task = _task(scenario, planner, predictor, limits, seed, noise_mm, dropout)
-    session = Session(task.spec, scenario, predictor=task.predictor, limits=limits, seed=task.trial_seed)
+    task = _task(scenario, planner, conditions)
+    session = Session(
+        task.spec,
+        scenario,
+        predictor=task.predictor,
+        limits=task.limits,
+        seed=task.trial_seed,
+        margin=task.margin,
+    )
     return session.plan(scenario.start, 0.0, Observer(task).until(0.0))
 
 
-def run_trial(
-    scenario: Scenario,
-    planner: PlannerLike,
-    *,
-    predictor: str | None = None,
-    limits: bool = False,
-    seed: int = 0,
-    noise_mm: float = 0.0,
-    dropout: float = 0.0,
-) -> TrialResult:
+def run_trial(scenario: Scenario, planner: PlannerLike, **conditions: Unpack[Conditions]) -> TrialResult:
     """Run a planner through a scenario in this process and judge what was executed.
 
     Args:
         scenario: The scenario.
         planner: The planner; what it raises goes through.
-        predictor: Predictor of obstacle motion; the planner's own when None.
-        limits: Whether the planner has to keep to the arm's motion limits.
-        seed: Seed of the experiment, from which the trial's derives as in a run.
-        noise_mm: Standard deviation of the noise on observed positions [mm].
-        dropout: Probability that an observation is lost.
+        **conditions: See ``Conditions``.
 
     Returns:
         The row, and what was executed: times (k,) [s] and configurations (k, dof) [rad].
@@ -204,7 +202,7 @@ def run_trial(
     Raises:
         SpecError: Unknown planner, setting or predictor.
     """
-    return episode.run_trial(_task(scenario, planner, predictor, limits, seed, noise_mm, dropout))
+    return episode.run_trial(_task(scenario, planner, conditions))
 
 
 def audit(
@@ -228,17 +226,18 @@ def audit(
     return judge(scenario, np.asarray(times_s, float), np.asarray(configurations_rad, float), contacts)
 
 
-def _task(
-    scenario: Scenario,
-    planner: PlannerLike,
-    predictor: str | None,
-    limits: bool,
-    seed: int,
-    noise_mm: float,
-    dropout: float,
-) -> TrialTask:
+def _task(scenario: Scenario, planner: PlannerLike, conditions: Conditions) -> TrialTask:
     spec = _spec(planner)
-    return TrialTask(scenario, spec, spec.predictor_for(predictor), limits, seed, noise_mm, dropout)
+    return TrialTask(
+        scenario,
+        spec,
+        spec.predictor_for(conditions.get("predictor")),
+        conditions.get("limits", False),
+        conditions.get("seed", 0),
+        conditions.get("noise_mm", 0.0),
+        conditions.get("dropout", 0.0),
+        conditions.get("margin"),
+    )
 
 
 def _spec(planner: PlannerLike) -> PlannerSpec:

@@ -136,7 +136,8 @@ class ContinuousPlanner(TreePlanner):
         """Plan on ``problem`` with a budget for each solve."""
         super().__init__(problem, settings)
         self._branches, self._retry_branches = settings.branches, settings.retry_branches
-        self._margin = settings.margin
+        asked = problem.query.asked_margin
+        self._margin = settings.margin if asked is None else asked
         self._last: Found | None = None
         self._failures = 0
 

@@ -34,6 +34,8 @@ class Query(NamedTuple):
     """Whether planners whose paths may otherwise jump in shape must keep to what the motion validator allows."""
     shapes: ShapedWorld | None = None
     """The obstacles' own shapes, which decide where the spheres are hit; None where ``world`` is exact."""
+    asked_margin: float | None = None
+    """Standard deviations that a run asks every planner to keep clear of; None where each is to keep its own."""
 
     def goal_distance(self, q: FloatArray) -> float:
         """Distance of the tip at ``q`` (dof,) [rad] from the goal point [m]."""

@@ -40,6 +40,10 @@ def run(
     predictor: Annotated[
         str | None, typer.Option(help="Predictor of obstacle motion. [default: each planner's own]")
     ] = None,
+    margin: Annotated[
+        float | None,
+        typer.Option(help="Standard deviations by which predicted obstacles are grown. [default: each planner's own]"),
+    ] = None,
     limits: Annotated[
         bool | None,
         typer.Option("--limits/--no-limits", help="Hold planners to the arm's motion limits. [default: no]"),
@@ -75,6 +79,7 @@ def run(
             "trials": trials,
             "seed": seed,
             "predictor": predictor,
+            "margin": margin,
             "limits": limits,
             "noise_mm": noise_mm,
             "dropout": dropout,

@@ -20,7 +20,7 @@ def table(
     reference: Annotated[str | None, typer.Option(help="Test every planner against this one, in pairs.")] = None,
     verdict: Annotated[
         Literal["per_step", "swept", "executable"], typer.Option(help="Success that is compared in pairs.")
-    ] = "per_step",
+    ] = "swept",
 ) -> None:
     """Print the comparison of a run, finished or not."""
     from suite.compare.pairs import compare_in_pairs

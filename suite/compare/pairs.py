@@ -24,7 +24,7 @@ PAIR_NAMES = (
 """Columns of a comparison in pairs."""
 
 
-def compare_in_pairs(trials: pd.DataFrame, reference: str, verdict: str = "per_step") -> pd.DataFrame:
+def compare_in_pairs(trials: pd.DataFrame, reference: str, verdict: str = "swept") -> pd.DataFrame:
     """Test every planner against ``reference``, but for bounds, which do not compete.
 
     Args:

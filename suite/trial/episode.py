@@ -30,7 +30,9 @@ def run_trial(task: TrialTask) -> TrialResult:
         message = "the start is hit while the obstacles are observed"
         return failed_trial(task, Failure("invalid_scenario", message), time.perf_counter() - started)
     theirs = scenario.model_copy(deep=True)
-    session = Session(task.spec, theirs, predictor=task.predictor, limits=task.limits, seed=task.trial_seed)
+    session = Session(
+        task.spec, theirs, predictor=task.predictor, limits=task.limits, seed=task.trial_seed, margin=task.margin
+    )
     observer, execution, solves = Observer(task), Execution(scenario), list[Plan]()
     outcome, message = "", ""
     while not (outcome or execution.has_arrived):

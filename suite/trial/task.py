@@ -51,8 +51,8 @@ class TrialTask:
     """Standard deviation of the noise on observed positions [mm]."""
     dropout: float = 0.0
     """Probability that an observation is lost."""
-    margin: float = 0.0
-    """Standard deviations by which the planner's predicted obstacles are grown."""
+    margin: float | None = None
+    """Standard deviations by which predicted obstacles are to be grown; the planner's own when None."""
     code: Code = NOBODYS
     """What is about to run it."""
 
@@ -70,7 +70,7 @@ class TrialTask:
             "planner": self.spec.label,
             "settings": self.spec.settings.model_dump_json(),
             "predictor": self.predictor,
-            "prediction_margin": self.margin,
+            "prediction_margin": self.spec.margin_for(self.margin),
             "limits": self.limits,
             "noise_mm": self.noise_mm,
             "dropout": self.dropout,

@@ -134,3 +134,9 @@ def test_a_lattice_that_does_not_fit_the_arm_is_refused_before_anything_is_built
     check_fit(split_specs("temporal,rrt,pf"), ContinuumArm())
     with pytest.raises(ScenarioError, match="spacing_rad"):
         check_fit(split_specs("rrt,temporal"), ContinuumArm(n_sections=5))
+
+
+def test_a_margin_that_is_asked_for_is_every_planners_but_a_bounds() -> None:
+    rrt, temporal, bound = parse_planner("rrt"), parse_planner("temporal"), parse_planner("clairvoyant")
+    assert [spec.margin_for(None) for spec in (rrt, temporal, bound)] == [1.0, 0.0, 0.0]
+    assert [spec.margin_for(1.5) for spec in (rrt, temporal, bound)] == [1.5, 1.5, 0.0]

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from planners import Observation, Session, parse_planner
 from planners.continuous._kernels import FAILURE_WEIGHT, near_node
-from planners.continuous.planner import FAR_S, LARGEST_BOUND_M, NEAR_S, Found, TreePlanner
+from planners.continuous.planner import FAR_S, NEAR_S, ContinuousPlanner, Found, TreePlanner
 from planners.continuous.workspace import Workspace, body_of
 from planners.problem import TimedPath
 from planners.search.certificate import _kernels as certificate
@@ -156,7 +156,7 @@ def test_the_next_seconds_keep_the_widest_margin_that_leaves_somewhere_to_go(
     planned = session(scenario, predictor="portfolio")
     planned.plan(scenario.start, 0.0, seen)
     prediction = planned._problem.query.prediction
-    ahead_s, bounds_m = prediction.ahead_s, np.minimum(prediction.bounds_m, LARGEST_BOUND_M)
+    ahead_s, bounds_m = prediction.ahead_s, np.minimum(prediction.bounds_m, ContinuousPlanner.largest_bound_m)
     for world, (near, far) in zip(asked, shares, strict=True):
         margins = (world.radii_m - prediction.radii_m) / bounds_m
         np.testing.assert_allclose(margins[ahead_s <= NEAR_S], 2.0 * near, atol=1e-9)
@@ -317,3 +317,13 @@ def test_a_step_takes_the_tip_straight_and_keeps_to_the_rates() -> None:
         assert speeds.max() <= ARM.max_tip_speed_m_s
         assert rates.max() <= ARM.max_bend_rate_rad_s
         assert np.linalg.norm(step.state.reshape(3, 2), axis=1).max() <= ARM.max_bend_rad + 1e-12
+
+
+def test_a_margin_that_a_run_asks_for_takes_the_place_of_its_own() -> None:
+    scenario = generate("orbit", 2, 1, 1003)[0]
+    asked = [
+        Session(parse_planner(text), scenario, predictor="portfolio", limits=False, seed=1, margin=margin)
+        for text, margin in (("temporal-ct[margin=0.5]", None), ("temporal-ct", 0.5), ("temporal-ct", None))
+    ]
+    assert [session._planner._margin for session in asked] == [0.5, 0.5, 2.0]
+    assert [session._margin for session in asked] == [1.0, 0.5, 1.0]
