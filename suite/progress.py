@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 LINE_EVERY_S = 10.0
 SOON_S = 2.0
 """A wait shorter than this is not talked about."""
+LOADED_SHARE = 0.1
+"""A part that took less than this share of its typical time had been compiled before."""
 LEAST_SHARE = 0.2
 """Parts under way that have taken long already are taken to need this share of their time still."""
 
@@ -70,30 +72,32 @@ def progress(total: int) -> Iterator[Reporter]:
 
 
 class Compilation:
-    """How long the warm-up still takes, from what its parts typically take and how fast it has been going here."""
+    """How long the warm-up still takes, from what its parts typically take and how fast compiling has been here."""
 
     def __init__(self) -> None:
         """Begin now."""
-        self._started_s = self._last_s = time.monotonic()
-        self._open: dict[str, float] = {}
-        self._done_s = 0.0
+        self._started_s = time.monotonic()
+        self._running: dict[str, tuple[float, float]] = {}
+        self._spent_s = self._typical_s = 0.0
 
     def sentence(self, running: Collection[Warming], waiting: Collection[Warming]) -> str:
         """What is being compiled and for how long; empty as long as it may be a matter of loading."""
         now_s = time.monotonic()
-        still = {part.name: part.typical_s for part in (*running, *waiting)}
-        done_s = sum(typical for name, typical in self._open.items() if name not in still)
-        self._open = still
-        if done_s > 0.0:
-            self._done_s, self._last_s = self._done_s + done_s, now_s
+        names = [part.name for part in running]
+        for name, (begun_s, typical_s) in list(self._running.items()):
+            if name not in names:
+                del self._running[name]
+                if now_s - begun_s > LOADED_SHARE * typical_s:
+                    self._spent_s, self._typical_s = self._spent_s + now_s - begun_s, self._typical_s + typical_s
+        for part in running:
+            self._running.setdefault(part.name, (now_s, part.typical_s))
         if not running or now_s - self._started_s < SOON_S:
             return ""
-        # Elapsed per typical second of the parts that are done; at first, as fast as elsewhere.
-        pace = (self._last_s - self._started_s) / self._done_s if self._done_s else 1.0 / len(running)
-        left_s = pace * sum(still.values())
-        left_s = max(left_s - (now_s - self._last_s), LEAST_SHARE * left_s)
+        pace = self._spent_s / self._typical_s if self._typical_s else 1.0
+        left_s = sum(max(pace * t - (now_s - begun_s), LEAST_SHARE * pace * t) for begun_s, t in self._running.values())
+        left_s += sum(pace * part.typical_s for part in waiting)
         others = f" and {len(waiting)} more" if waiting else ""
-        return f"compiling, once: {', '.join(part.name for part in running)}{others}; about {left_s:.0f} s to go"
+        return f"compiling, once: {', '.join(names)}{others}; about {left_s / len(running):.0f} s to go"
 
 
 class _Bar:

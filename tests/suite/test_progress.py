@@ -28,12 +28,17 @@ def test_loading_is_not_talked_about() -> None:
 
 def test_it_says_what_is_compiled_and_how_long_that_takes() -> None:
     (said,) = sentences((2.5, PARTS[:2], PARTS[2:]))
-    assert said == "compiling, once: a, b and 2 more; about 18 s to go"
+    assert said == "compiling, once: a, b and 2 more; about 20 s to go"
 
 
 def test_the_pace_is_that_of_the_parts_that_are_done() -> None:
     *_, said = sentences((0.0, PARTS[:2], PARTS[2:]), (20.0, PARTS[2:], []), (24.0, PARTS[2:], []))
     assert said.endswith("about 16 s to go")  # two took 20 s, the other two have taken 4
+
+
+def test_what_was_only_loaded_says_nothing_about_the_pace() -> None:
+    *_, said = sentences((0.0, PARTS[:2], PARTS[2:]), (0.5, PARTS[2:], []), (3.0, PARTS[2:], []))
+    assert said.endswith("about 8 s to go")
 
 
 def test_it_never_says_that_nothing_is_left() -> None:
