@@ -27,6 +27,7 @@ def make_row(planner: str, number: int, *, success: bool, **others: object) -> R
         "experiment_seed": 3,
         "outcome": "reached" if success else "collided",
         "success_per_step": success,
+        "success_swept": success,
         "planning_time_s": 1.0 + number,
         "solve_p50_s": 0.001,
         "arrival_time_s": 10.0 + number if success else None,
