@@ -27,7 +27,6 @@ def make_row(planner: str, number: int, *, success: bool, **others: object) -> R
         "experiment_seed": 3,
         "outcome": "reached" if success else "collided",
         "success_per_step": success,
-        "success_swept": success,
         "planning_time_s": 1.0 + number,
         "solve_p50_s": 0.001,
         "arrival_time_s": 10.0 + number if success else None,
@@ -106,8 +105,8 @@ def test_shares_are_over_the_scenarios_that_both_were_tried_on() -> None:
 
 def test_a_bound_is_compared_in_pairs_only_when_asked_for() -> None:
     trials = make_trials(clairvoyant=[True, True], rrt=[True, False], pf=[True, False])
-    assert set(compare_in_pairs(trials, "rrt")["planner"]) == {"pf"}
-    assert set(compare_in_pairs(trials, "clairvoyant")["planner"]) == {"rrt", "pf"}
+    assert set(compare_in_pairs(trials, "rrt", "per_step")["planner"]) == {"pf"}
+    assert set(compare_in_pairs(trials, "clairvoyant", "per_step")["planner"]) == {"rrt", "pf"}
 
 
 def test_trials_survive_the_csv(tmp_path) -> None:
@@ -173,7 +172,7 @@ def test_pairs_by_hand() -> None:
         bad=[False] * 8 + [True, False],  # eight lost, one won: p = 2 * (1 + 9) / 2^9
         same=[True] * 8 + [False] * 2,
     )
-    pairs = compare_in_pairs(trials, "ref").set_index("planner")
+    pairs = compare_in_pairs(trials, "ref", "per_step").set_index("planner")
     assert pairs.loc["bad", ["scenarios", "only_planner", "only_reference"]].tolist() == [10, 1, 8]
     assert pairs.loc["bad", "p_mcnemar"] == pytest.approx(0.0390625)
     assert pairs.loc["bad", "p_holm"] == pytest.approx(2 * 0.0390625)
@@ -196,7 +195,7 @@ def test_an_unknown_reference_lists_the_known_ones() -> None:
 
 def test_formats() -> None:
     trials = make_trials(pf=[True, False], rrt=[False, True])
-    summary, pairs = summarize(trials), compare_in_pairs(trials, "pf")
+    summary, pairs = summarize(trials), compare_in_pairs(trials, "pf", "per_step")
     for text in (render(summary, "latex"), render_pairs(pairs, "latex")):
         assert text.count(r"\toprule") == text.count(r"\bottomrule") == 1
     for text in (render(summary, "markdown"), render_pairs(pairs, "markdown")):
