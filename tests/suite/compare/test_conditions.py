@@ -82,7 +82,7 @@ def test_a_bound_may_have_a_predictor_of_its_own() -> None:
 
 @pytest.mark.parametrize("name", ["arm", "noise_mm", "predictor"])
 def test_pairs_compare_like_with_like(name: str) -> None:
-    pairs = compare_in_pairs(unlike_trials(name, {"pf": 0.25, "rrt": 0.75}), "pf")
+    pairs = compare_in_pairs(unlike_trials(name, {"pf": 0.25, "rrt": 0.75}), "pf", "per_step")
     assert pairs[["scenarios", "only_planner", "only_reference"]].to_numpy().tolist() == [[4, 0, 0], [4, 2, 0]]
     assert pairs[name].tolist() == list(UNLIKE[name])
     assert column(pairs, name)[0] in render_pairs(pairs, "markdown")
@@ -91,4 +91,4 @@ def test_pairs_compare_like_with_like(name: str) -> None:
 
 def test_planners_with_predictors_of_their_own_meet() -> None:
     rows = [make_row("pf", 0, success=True), make_row("rrt", 0, success=False, predictor="gp")]
-    assert compare_in_pairs(trials_frame(rows), "pf")["only_reference"].tolist() == [1]
+    assert compare_in_pairs(trials_frame(rows), "pf", "per_step")["only_reference"].tolist() == [1]

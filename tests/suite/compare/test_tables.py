@@ -180,17 +180,17 @@ def test_pairs_by_hand() -> None:
 
 
 def test_pairs_use_only_scenarios_that_both_were_tried_on() -> None:
-    pairs = compare_in_pairs(make_trials(ref=[True, True, False], other=[False]), "ref")
+    pairs = compare_in_pairs(make_trials(ref=[True, True, False], other=[False]), "ref", "per_step")
     assert pairs[["scenarios", "only_reference"]].to_numpy().tolist() == [[1, 1]]
 
 
 def test_a_reference_alone_makes_an_empty_table() -> None:
-    assert compare_in_pairs(make_trials(ref=[True]), "ref").empty
+    assert compare_in_pairs(make_trials(ref=[True]), "ref", "per_step").empty
 
 
 def test_an_unknown_reference_lists_the_known_ones() -> None:
     with pytest.raises(SuiteError, match="reference: found 't9', allowed: pf, rrt"):
-        compare_in_pairs(make_trials(pf=[True], rrt=[True]), "t9")
+        compare_in_pairs(make_trials(pf=[True], rrt=[True]), "t9", "per_step")
 
 
 def test_formats() -> None:
