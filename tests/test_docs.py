@@ -22,7 +22,14 @@ class Block(NamedTuple):
     code: str
 
 
-BLOCKS = [Block(*found) for found in re.findall(r"^```(\w*)\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)]
+PYTHON_PAGE = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
+
+
+def blocks_of(page: str) -> list[Block]:
+    return [Block(*found) for found in re.findall(r"^```(\w*)\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)]
+
+
+BLOCKS = blocks_of(PAGE)
 
 
 @pytest.fixture(scope="module")
@@ -81,3 +88,12 @@ def test_the_page_knows_every_class_attribute() -> None:
     declared = {name for name, kind in ArmPlanner.__annotations__.items() if "ClassVar" in str(kind)}
     table = PAGE.partition("## What does the suite want to know of it?")[2].partition("\n## ")[0]
     assert set(re.findall(r"^\| `(\w+)` \|", table, re.MULTILINE)) == declared
+
+
+def test_every_block_of_the_python_page_runs(folder: Path) -> None:
+    blocks = blocks_of(PYTHON_PAGE)
+    assert {block.language for block in blocks} == {"python"}
+    assert PYTHON_PAGE.count("```") == 2 * len(blocks)
+    said = [run(folder, "python", "-c", block.code) for block in blocks]  # the second reads what the first has run
+    assert all(said)
+    assert said[-1] == "stuck\n"
