@@ -13,6 +13,7 @@ import importlib
 import importlib.util
 import inspect
 import sys
+from collections.abc import Iterable
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from types import ModuleType
@@ -100,11 +101,7 @@ def code_hash(name: str) -> str:
     place, _, class_name = _target(name).rpartition(":")
     if is_here(name):
         return _hash_here(_OFFERED_HERE[class_name])
-    sources = _closure(Path(place)) if place.endswith(".py") else _package_sources(place)
-    digest = hashlib.sha256()
-    for source in sorted(sources):
-        digest.update(source.name.encode() + b"\0" + source.read_bytes() + b"\0")
-    return digest.hexdigest()[:16]
+    return _IMPORTED[place] if place in _IMPORTED else _hash(_sources(place))
 
 
 def _hash_here(planner: type[ArmPlanner]) -> str:
@@ -125,12 +122,33 @@ def _is_planner(value: object) -> bool:
     return isinstance(value, type) and issubclass(value, ArmPlanner)
 
 
-@functools.lru_cache(maxsize=64)
+_IMPORTED: dict[str, str] = {}
+"""Hashes of the modules that this process has imported by name: it goes on with what they were then."""
+
+
 def _module(place: str) -> ModuleType:
-    """Import a file under a name of its own, or a module by its name; what stands beside the file can be imported."""
-    if not place.endswith(".py"):
-        _append_path(str(Path.cwd()))
-        return importlib.import_module(place)
+    """The module of a file, as the file now is, or one by its name.
+
+    Raises:
+        SpecError: There is no module of that name.
+    """
+    if place.endswith(".py"):
+        return _file_module(place, _hash(_sources(place)))
+    sources = _sources(place)
+    try:
+        module = importlib.import_module(place)
+    except ModuleNotFoundError as error:
+        if error.name is None or not f"{place}.".startswith(f"{error.name}."):
+            raise
+        raise SpecError(f"planner: found no module {place!r}, allowed one that is installed or beside you") from None
+    _IMPORTED.setdefault(place, _hash(sources))
+    return module
+
+
+@functools.lru_cache(maxsize=64)
+def _file_module(place: str, code: str) -> ModuleType:
+    """Import a file in the state ``code`` under a name of its own; what stands beside it can be imported there."""
+    del code
     file = Path(place)
     name = f"continuum_arm_suite_plugin_{file.stem}_{hashlib.sha256(place.encode()).hexdigest()[:8]}"
     spec = importlib.util.spec_from_file_location(name, file)
@@ -138,6 +156,7 @@ def _module(place: str) -> ModuleType:
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     _append_path(str(file.parent))
+    _forget(_closure(file))
     sys.modules[name] = module  # pickle and dataclasses look a class's module up by its name
     try:
         spec.loader.exec_module(module)
@@ -147,10 +166,30 @@ def _module(place: str) -> ModuleType:
     return module
 
 
+def _forget(sources: set[Path]) -> None:
+    """Have what a file imports from beside it imported anew: in a notebook that may have been edited as well."""
+    importlib.invalidate_caches()
+    for name, module in list(sys.modules.items()):
+        if getattr(module, "__file__", None) and Path(str(module.__file__)) in sources:
+            del sys.modules[name]
+
+
 def _append_path(folder: str) -> None:
     """Last, so that nothing there hides what is installed."""
     if folder not in sys.path:
         sys.path.append(folder)
+
+
+def _sources(place: str) -> list[Path]:
+    """The sources behind a file or a module."""
+    return sorted(_closure(Path(place)) if place.endswith(".py") else _package_sources(place))
+
+
+def _hash(sources: Iterable[Path]) -> str:
+    digest = hashlib.sha256()
+    for source in sources:
+        digest.update(source.name.encode() + b"\0" + source.read_bytes() + b"\0")
+    return digest.hexdigest()[:16]
 
 
 def _closure(file: Path) -> set[Path]:
@@ -195,4 +234,4 @@ def _package_sources(module: str) -> list[Path]:
     folders = spec.submodule_search_locations
     if folders:
         return [file for folder in folders for file in Path(folder).rglob("*.py")]
-    return [Path(spec.origin)] if spec.origin else []
+    return [Path(spec.origin)] if spec.origin and Path(spec.origin).is_file() else []

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+import suite
 from planners import ArmPlanner, Session, describe, failure_of, parse_planner, plugins
 from planners.isolation import OutsideSettings
 from planners.spec import load, read_spec
@@ -175,6 +176,8 @@ def test_what_a_planner_prints_while_it_is_imported_is_no_answer(folder) -> None
         ("still.py:Still[gian=2]", ["'gian'", "allowed gain"]),
         ("still.py:Still[gain=-1]", ["Still[gain]", "greater than 0"]),
         ("no_such_module.x:Mine", ["no module 'no_such_module.x'"]),
+        ("json.nothing:Mine", ["no module 'json.nothing'"]),
+        ("sys:Mine", ["no class 'Mine' in sys"]),
         ("strt", ["nearest: strrt"]),
     ],
 )
@@ -218,3 +221,26 @@ def test_a_reference_means_the_same_in_any_folder(folder, tmp_path_factory) -> N
     spec = describe("still.py:Still")
     os.chdir(tmp_path_factory.mktemp("elsewhere"))
     assert load(spec)[0].__name__ == "Still"
+
+
+def test_what_is_edited_while_this_process_lives_is_imported_anew(folder) -> None:
+    (folder / "parts.py").write_text("GAIN = 1\n")
+    (folder / "still.py").write_text("import parts\n" + PLANNER + "    gain = parts.GAIN\n")
+    before = parse_planner("still.py:Still")
+    assert load(before)[0].gain == 1
+    (folder / "parts.py").write_text("GAIN = 2\n")
+    after = parse_planner("still.py:Still")
+    assert after.code != before.code
+    assert load(after)[0].gain == 2
+
+
+def test_rows_of_an_edited_planner_are_run_again_and_no_others(folder, capfd) -> None:
+    first = suite.run("./still.py:Still,pf", obstacles=(0,), trials=2, seed=1000, out="run").trials
+    (folder / "still.py").write_text(PLANNER + "# edited\n")
+    capfd.readouterr()
+    second = suite.run("./still.py:Still,pf", obstacles=(0,), trials=2, seed=1000, out="run").trials
+    assert "Still: its code has changed; its 2 rows of before are stale and run again" in capfd.readouterr().err
+    theirs, ours = (trials[trials["planner"] == "pf"].reset_index(drop=True) for trials in (first, second))
+    assert theirs.equals(ours)  # even their timings stand
+    edited = [set(trials[trials["planner"] == "Still"]["planner_code"]) for trials in (first, second)]
+    assert edited[0].isdisjoint(edited[1])
