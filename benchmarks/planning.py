@@ -26,8 +26,8 @@ def against_literal(quick: bool) -> list[Line]:
     for name, transitions, target, depths in READINGS:
         few = [
             query
-            for scenario in queries.scenarios(5, 1 if quick else 3)
-            for query in itertools.islice(queries.along(scenario, 2, transitions, target), 1 if quick else 3)
+            for scenario in queries.scenarios(5, 1 if quick else 2)
+            for query in itertools.islice(queries.along(scenario, 2, transitions, target), 1 if quick else 2)
         ]
         fast, slow = np.array([_ratio(query) for query in few]).T
         lines += [
