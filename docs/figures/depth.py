@@ -13,12 +13,12 @@ from scipy.stats import binomtest
 
 
 def depth(planner: str) -> int:
-    """Steps planned ahead by ``t2``, ``t3`` or ``temporal[horizon=h]``."""
-    return int(re.findall(r"\d+", planner)[0])
+    """Steps planned ahead by ``t2``, ``temporal[horizon=h,...]`` or ``temporal-best``, which looks 3 ahead."""
+    return int(next(iter(re.findall(r"\d+", planner)), 3))
 
 
 def draw(cubic: Path, truth: Path, figure: Path) -> None:
-    """Draw per-step success over depth, a panel per number of obstacles, with 95 % Wilson intervals."""
+    """Draw swept success over depth, a panel per number of obstacles, with 95 % Wilson intervals."""
     runs = {"cubic prediction": cubic, "the future known": truth}
     trials = {name: pd.read_csv(run / "trials.csv") for name, run in runs.items()}
     counts = sorted(trials["cubic prediction"]["n_obstacles"].unique())
@@ -26,7 +26,7 @@ def draw(cubic: Path, truth: Path, figure: Path) -> None:
     for axis, n in zip(axes, counts, strict=True):
         for name, style in (("cubic prediction", "o-"), ("the future known", "s--")):
             of_n = trials[name][trials[name]["n_obstacles"] == n]
-            groups = sorted((depth(planner), rows["success_per_step"]) for planner, rows in of_n.groupby("planner"))
+            groups = sorted((depth(planner), rows["success_swept"]) for planner, rows in of_n.groupby("planner"))
             depths = [h for h, _ in groups]
             tests = [binomtest(int(hits.sum()), len(hits)) for _, hits in groups]
             rates = [100 * test.statistic for test in tests]
@@ -35,7 +35,7 @@ def draw(cubic: Path, truth: Path, figure: Path) -> None:
             above = [100 * b.high - rate for rate, b in zip(rates, bounds, strict=True)]
             axis.errorbar(depths, rates, yerr=[below, above], fmt=style, capsize=3, label=name)
         axis.set(title=f"{n} obstacles", xlabel="depth h [steps]")
-    axes[0].set(ylabel="success per step [%]", ylim=(0, 102))
+    axes[0].set(ylabel="success, swept [%]", ylim=(0, 102))
     axes[0].legend(loc="lower left")
     plt.savefig(figure, dpi=110)
 
