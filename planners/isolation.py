@@ -18,6 +18,7 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from planners import plugins
+from planners.child import answers_alone, command_for
 from planners.failure import Failure, failure_of
 from planners.prediction import PREDICTORS
 from planners.spec import PlannerSpec, is_outside, parse_planner, planner_class, read_spec
@@ -25,14 +26,6 @@ from scenarios.spec import SpecError
 
 LIMIT_S = 60.0
 """A planner that has not been imported after this long [s] is taken to hang; its kernels are compiled later."""
-
-_CHILD = """\
-import json, sys
-request = json.loads(sys.stdin.read())
-sys.path[:] = request["path"]
-from planners.isolation import answer
-answer(request["text"])
-"""
 
 
 class OutsideSettings(BaseModel):
@@ -94,7 +87,7 @@ def facts_of(text: str, code: str, limit_s: float = LIMIT_S) -> Facts:
     """Start a child that imports the planner and read its answer: once for each state ``code`` of its sources."""
     del code
     with subprocess.Popen(
-        [sys.executable, "-P", "-c", _CHILD],
+        command_for("planners.isolation"),
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
@@ -118,12 +111,12 @@ def _cause(code: int) -> str:
     return signal.Signals(-code).name if code < 0 else f"exit code {code}"
 
 
-def answer(text: str) -> None:
-    """In the child: print the facts of a planner as JSON; what the planner prints goes to standard error."""
-    handle = os.dup(1)
-    os.dup2(2, 1)
-    facts = _look_at(text)
-    os.write(handle, facts.model_dump_json().encode())
+def main() -> None:
+    """In the child: read which planner is asked about, write its facts."""
+    with answers_alone() as out:
+        order = json.load(sys.stdin)
+        sys.path[:] = order["path"]  # what the asker can import can be imported here
+        out.write(_look_at(order["text"]).model_dump_json())
     os._exit(0)  # threads and exit handlers of the planner's own are not waited for
 
 

@@ -17,6 +17,7 @@ from collections.abc import Iterable
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from types import ModuleType
+from typing import TypeGuard
 
 from planners.base import ArmPlanner
 from scenarios.spec import SpecError
@@ -87,7 +88,7 @@ def load_class(name: str) -> type[ArmPlanner]:
         raise SpecError(f"planner: found no class {class_name!r} in {place}, allowed {allowed}")
     if not _is_planner(found):
         raise SpecError(f"planner: found {class_name!r} in {place}, allowed a class derived from planners.ArmPlanner")
-    return found  # type: ignore[no-any-return]
+    return found
 
 
 def code_hash(name: str) -> str:
@@ -118,7 +119,7 @@ def _target(name: str) -> str:
     return name if is_reference(name) else offered()[name].value
 
 
-def _is_planner(value: object) -> bool:
+def _is_planner(value: object) -> TypeGuard[type[ArmPlanner]]:
     return isinstance(value, type) and issubclass(value, ArmPlanner)
 
 

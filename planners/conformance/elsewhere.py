@@ -1,15 +1,12 @@
 """A plan made in a process of its own, which is told a planner's spec and nothing else."""
 
 import json
-import os
 import subprocess
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
-from typing import TextIO
 
 import numpy as np
 
+from planners.child import answers_alone, command_for
 from planners.conformance.scenes import observe, read_again, scenes, session_of
 from planners.session import Plan
 from planners.spec import PlannerSpec
@@ -41,23 +38,6 @@ def plan_elsewhere(planner: PlannerSpec, scene: str) -> Plan:
     status, times, configurations, states, motions = json.loads(done.stdout)
     shape = (len(times), scenes()[scene].arm.dof)
     return Plan(status, np.array(times), np.array(configurations).reshape(shape), np.nan, states, motions)
-
-
-def command_for(module: str) -> list[str]:
-    """The command of a process that runs ``module``'s ``main``.
-
-    Not by way of this process's main script, which may have no guard, and without the folder that the user happens to
-    stand in (-P), where a file may hide one of the suite's packages.
-    """
-    return [sys.executable, "-P", "-c", f"from {module} import main; main()"]
-
-
-@contextmanager
-def answers_alone() -> Iterator[TextIO]:
-    """The standard output, for this process's answers; whatever a planner prints goes to the errors instead."""
-    with os.fdopen(os.dup(1), "w", encoding="utf-8") as out:
-        os.dup2(2, 1)
-        yield out
 
 
 def main() -> None:

@@ -6,7 +6,7 @@ import json
 import sys
 
 from planners import PlannerSpec, parse_planner
-from planners.conformance.elsewhere import answers_alone
+from planners.child import answers_alone
 from planners.failure import failure_of
 from planners.first_use import warm_up_planner, warm_up_problem
 from scenarios import ContinuumArm, SpecError

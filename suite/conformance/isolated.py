@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from typing import Any
 
-from planners.conformance.elsewhere import command_for
+from planners.child import command_for
 from planners.spec import read_spec
 from scenarios import SpecError
 from suite.conformance.finding import IMPORT, Finding
