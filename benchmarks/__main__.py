@@ -16,6 +16,7 @@ def main() -> None:
     from benchmarks.boundary import boundary
     from benchmarks.continuous import solve_times
     from benchmarks.planning import against_literal, growth
+    from benchmarks.proofs import possible, soundness
     from benchmarks.strrt import against_ompl
     from benchmarks.suite_runs import memory, step, throughput
     from benchmarks.timing import render
@@ -30,11 +31,16 @@ def main() -> None:
         "throughput": ("The suite", throughput),
         "step": ("What a step of a trial takes", step),
         "memory": ("Memory", memory),
+        "possible": ("What is proven impossible, seed 0", possible),
+        "soundness": ("Proofs against planners", soundness),
         "strrt": ("ST-RRT* against that of OMPL 1.7.0, future known", against_ompl),
     }
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
     parser.add_argument(
-        "parts", nargs="*", metavar="part", help=f"which to run: {', '.join(parts)}; all by default, but for strrt"
+        "parts",
+        nargs="*",
+        metavar="part",
+        help=f"which to run: {', '.join(parts)}; all by default, but for the last three",
     )
     parser.add_argument("--quick", action="store_true", help="fewer and smaller samples: two minutes, not eight")
     given = parser.parse_args()
@@ -42,8 +48,8 @@ def main() -> None:
     if unknown:
         parser.error(f"part: found {unknown[0]!r}, allowed {', '.join(parts)}")
     sys.stdout.write(f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}\n")
-    # strrt installs another OMPL first, 700 MB in the cache folder: only when asked for.
-    for name in given.parts or [part for part in parts if part != "strrt"]:
+    # Only when asked for: proofs take many minutes, and strrt installs another OMPL first, 700 MB in the cache folder.
+    for name in given.parts or list(parts)[:-3]:
         title, measure = parts[name]
         sys.stdout.write(f"\n{render(title, measure(given.quick))}")
         sys.stdout.flush()

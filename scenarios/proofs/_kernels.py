@@ -13,34 +13,38 @@ LONGEST_S = 1.5  # a pair whose part was free is looked at again after this: tha
 
 @bare_kernel
 def hull_distance(hulls, j, x, y, z, enough):
-    """Distance [m] of the hull of obstacle ``j``'s vertices from (x, y, z), given about its centre; never understated.
+    """Bounds on the distance [m] of the hull of obstacle ``j``'s vertices from (x, y, z), given about its centre.
 
-    Frank and Wolfe's method with exact line search: every iterate is a point of the hull. It ends below ``enough``, or
-    where a plane shows that the hull is nowhere nearer than that.
+    Frank and Wolfe's method with exact line search: every iterate is a point of the hull, and a plane across its
+    direction parts the hull from what is nearer. It ends when the upper bound is below ``enough`` or the lower is not;
+    where ``enough`` is 0, when both agree.
+
+    Returns:
+        The upper and the lower bound.
     """
     first, end = hulls.spans[j, 0], hulls.spans[j, 1]
     vertices = hulls.vertices_m
-    px, py, pz = vertices[first, 0] - x, vertices[first, 1] - y, vertices[first, 2] - z
+    px, py, pz = hulls.middles_m[j, 0] - x, hulls.middles_m[j, 1] - y, hulls.middles_m[j, 2] - z
+    lower, distance = 0.0, math.sqrt(px * px + py * py + pz * pz)
+    if end - first == 1:
+        return distance, distance
     for _ in range(NEAR_TRIES):
-        square = px * px + py * py + pz * pz
-        distance = math.sqrt(square)
-        if end - first == 1 or distance < enough:
-            return distance
+        if distance < enough or distance == 0.0:
+            break
         least, best = math.inf, first
         for k in range(first, end):
             along = px * (vertices[k, 0] - x) + py * (vertices[k, 1] - y) + pz * (vertices[k, 2] - z)
             if along < least:
                 least, best = along, k
-        if least >= distance * enough:
-            return distance
+        lower = max(lower, least / distance)
+        if lower >= (enough if enough > 0.0 else (1.0 - 1e-9) * distance):
+            break
         dx, dy, dz = vertices[best, 0] - x - px, vertices[best, 1] - y - py, vertices[best, 2] - z - pz
         length = dx * dx + dy * dy + dz * dz
-        ahead = -(px * dx + py * dy + pz * dz)
-        if ahead <= 0.0:
-            return distance
-        share = min(1.0, ahead / length)
+        share = min(1.0, -(px * dx + py * dy + pz * dz) / length)
         px, py, pz = px + share * dx, py + share * dy, pz + share * dz
-    return math.sqrt(px * px + py * py + pz * pz)
+        distance = math.sqrt(px * px + py * py + pz * pz)
+    return distance, lower
 
 
 @kernel
@@ -49,7 +53,7 @@ def first_near(point, centers, j, hulls):
     reach = hulls.reaches_m[j]
     for k in range(centers.shape[0]):
         x, y, z = point[0] - centers[k, 0], point[1] - centers[k, 1], point[2] - centers[k, 2]
-        if hull_distance(hulls, j, x, y, z, reach) < reach:
+        if hull_distance(hulls, j, x, y, z, reach)[0] < reach:
             return k
     return -1
 
@@ -60,7 +64,7 @@ def goal_covered_for(goal, radius, centers, hulls):
     longest = 0.0
     for j in range(centers.shape[0]):
         x, y, z = goal[0] - centers[j, 0], goal[1] - centers[j, 1], goal[2] - centers[j, 2]
-        spare = hulls.reaches_m[j] - radius - hull_distance(hulls, j, x, y, z, 0.0)
+        spare = hulls.reaches_m[j] - radius - hull_distance(hulls, j, x, y, z, 0.0)[0]
         longest = max(longest, spare / hulls.speeds_m_s[j])
     return longest
 
@@ -92,7 +96,7 @@ def _covers_lens(hulls, j, center, start, goal, start_radius, goal_radius):
     x = start[0] + along * dx - center[0]
     y = start[1] + along * dy - center[1]
     z = start[2] + along * dz - center[2]
-    return hull_distance(hulls, j, x, y, z, reach) < reach
+    return hull_distance(hulls, j, x, y, z, reach)[0] < reach
 
 
 @kernel
@@ -154,12 +158,13 @@ def spread(alive, allowed, offsets, out):
 
 
 @kernel
-def strike(alive, until, now, points, spacing, shifts, centers, hulls):
+def strike(alive, until, culprits, now, points, spacing, shifts, centers, hulls):
     """Drop from ``alive`` (N, N) the cells all of whose bends are hit at time ``now``.
 
     Args:
         alive: Cells that may be had; changed.
         until: Time before which a cell need not be looked at, shape (N, N), [s]; changed.
+        culprits: Obstacle that hit a cell when it was last dropped: the first to look at; shape (N, N); changed.
         now: The time [s].
         points: Backbone points at the cells' middles, shape (N, N, S, 3), [m].
         spacing: How far one is from the next along the backbone [m].
@@ -167,33 +172,43 @@ def strike(alive, until, now, points, spacing, shifts, centers, hulls):
         centers: Obstacle centres now, shape (m, 3), [m].
         hulls: The obstacles.
     """
+    frame = np.eye(3)
     for i in range(alive.shape[0]):
         for j in range(alive.shape[1]):
             if alive[i, j] and until[i, j] <= now:
-                free = _free_for(points[i, j], spacing, shifts, centers, hulls)
+                free, culprits[i, j] = _free_for(points[i, j], spacing, shifts, centers, frame, hulls, culprits[i, j])
                 until[i, j] = now + free
                 alive[i, j] = free >= 0.0
 
 
 @bare_kernel
-def _free_for(points, spacing, shifts, centers, hulls):
+def _free_for(points, spacing, shifts, centers, frame, hulls, first):
     """How long ``points`` (S, 3), each anywhere within its shift (S,), will not all be hit for certain [s].
 
-    Negative when they are now: a point of the backbone, wherever it is, is in touch with an obstacle.
+    Points and centres (m, 3) are given in a frame (3, 3). Negative when the points are hit now: one of them, wherever
+    it is, is in touch with an obstacle. Obstacle ``first`` is looked at first; returns as well which one it is.
     """
     free = math.inf
-    for j in range(centers.shape[0]):
+    for turn in range(centers.shape[0]):
+        j = (first + turn) % centers.shape[0]
         s = 0
         while s < points.shape[0]:
             x, y, z = points[s, 0] - centers[j, 0], points[s, 1] - centers[j, 1], points[s, 2] - centers[j, 2]
             reach = hulls.reaches_m[j] - shifts[s]
             gap = math.sqrt(x * x + y * y + z * z) - hulls.extents_m[j] - reach
-            if gap < 0.0 and hull_distance(hulls, j, x, y, z, reach) < reach:
-                return -1.0
+            if gap < 0.0 and reach > 0.0:
+                wx = frame[0, 0] * x + frame[0, 1] * y + frame[0, 2] * z
+                wy = frame[1, 0] * x + frame[1, 1] * y + frame[1, 2] * z
+                wz = frame[2, 0] * x + frame[2, 1] * y + frame[2, 2] * z
+                upper, lower = hull_distance(hulls, j, wx, wy, wz, reach)
+                if upper < reach:
+                    return -1.0, j
+                gap = lower - reach
             # The gap shrinks no faster than the backbone goes on: points for which half of it is left are passed over.
-            free = min(free, max(0.5 * gap, 0.0) / hulls.speeds_m_s[j])
-            s += 1 + int(max(0.5 * gap, 0.0) / spacing)
-    return free
+            half = max(0.5 * gap, 0.0)
+            free = min(free, half / hulls.speeds_m_s[j])
+            s += 1 + int(min(half / spacing, points.shape[0]))
+    return free, first
 
 
 @kernel
@@ -236,29 +251,10 @@ def _seen_from(frame, origin, point):
     )
 
 
-@bare_kernel
-def _pair_free_for(points, spacing, shifts, centers, frame, hulls):
-    """``_free_for`` of points and centres (m, 3) given in a frame (3, 3)."""
-    free = math.inf
-    for j in range(centers.shape[0]):
-        s = 0
-        while s < points.shape[0]:
-            x, y, z = points[s, 0] - centers[j, 0], points[s, 1] - centers[j, 1], points[s, 2] - centers[j, 2]
-            reach = hulls.reaches_m[j] - shifts[s]
-            gap = math.sqrt(x * x + y * y + z * z) - hulls.extents_m[j] - reach
-            if gap < 0.0:
-                wx = frame[0, 0] * x + frame[0, 1] * y + frame[0, 2] * z
-                wy = frame[1, 0] * x + frame[1, 1] * y + frame[1, 2] * z
-                wz = frame[2, 0] * x + frame[2, 1] * y + frame[2, 2] * z
-                if hull_distance(hulls, j, wx, wy, wz, reach) < reach:
-                    return -1.0
-            free = min(free, max(0.5 * gap, 0.0) / hulls.speeds_m_s[j])
-            s += 1 + int(max(0.5 * gap, 0.0) / spacing)
-    return free
-
-
 @kernel
-def strike_pairs(alive, until, now, parts, frames, ends, points, spacing, shifts, centers, hulls, start, goal, far):
+def strike_pairs(
+    alive, until, culprits, now, parts, frames, ends, points, spacing, shifts, centers, hulls, start, goal, far
+):
     """Drop from ``alive`` (K, K) the pairs of cells all of whose bends are hit, or too far from start or goal.
 
     A cell of section 1 is looked at in parts, the one in the middle first; the pair is hit when all of them are.
@@ -266,6 +262,7 @@ def strike_pairs(alive, until, now, parts, frames, ends, points, spacing, shifts
     Args:
         alive: Pairs of cells of sections 1 and 2; changed.
         until: Time before which a pair need not be looked at, shape (K, K), [s]; changed.
+        culprits: Obstacle that hit a pair when it was last dropped, shape (K, K); changed.
         now: The time [s].
         parts: Parts of the cells of section 1 that may be had, shape (K, P).
         frames: Frames at the end of section 1 in the middle of each part, shape (K, P, 3, 3).
@@ -314,7 +311,8 @@ def strike_pairs(alive, until, now, parts, frames, ends, points, spacing, shifts
             if until[a, c] <= now:
                 free = -1.0
                 for k in range(used):
-                    free = _pair_free_for(points[c], spacing, shifts, local[k], frames[a, looked[k]], hulls)
+                    frame = frames[a, looked[k]]
+                    free, culprits[a, c] = _free_for(points[c], spacing, shifts, local[k], frame, hulls, culprits[a, c])
                     if free >= 0.0:
                         break
                 if free < 0.0:

@@ -11,9 +11,10 @@ _MAX_LOOKS = 20_000
 
 
 def base_hit_s(scenario: Scenario, hulls: Hulls) -> float:
-    """An instant at which an obstacle is over the base [s], no later than 0.1 mm of its way after the first; else inf.
+    """An early instant in [0, time limit] at which an obstacle is over the base [s]; inf when none is found.
 
-    It is looked for in [0, time limit]. Every look that finds contact is a proof; what passes between two is missed.
+    It is looked for every 0.1 mm of an obstacle's way, or every 20,000th of the time where that is longer. A look that
+    finds contact is a proof; what passes between two is missed.
     """
     base, earliest = np.zeros(3), np.inf
     for j, obstacle in enumerate(scenario.obstacles):

@@ -1,6 +1,7 @@
 """The bends of a section, cut into square cells, and where its backbone runs at the middle of each."""
 
 import functools
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -30,7 +31,7 @@ class Cells(NamedTuple):
     @property
     def half_rad(self) -> float:
         """How far a bending vector of a cell is from its middle at most, ``STRAY_RAD`` included."""
-        return self.edge_rad / np.sqrt(2.0) + STRAY_RAD
+        return self.edge_rad / math.sqrt(2.0) + STRAY_RAD
 
     def around(self, bending_rad: FloatArray) -> npt.NDArray[np.bool_]:
         """Cells (N, N) that hold a bending vector (2,), rounding included."""
@@ -51,7 +52,7 @@ def cells_of(length_m: float, max_bend_rad: float, per_radius: int) -> Cells:
     """Cells of a section; ``per_radius`` of them, side by side, are as long as the largest bend."""
     edge = max_bend_rad / per_radius
     far = int(np.ceil((max_bend_rad + STRAY_RAD) / edge))
-    middles = edge * np.arange(-far, far + 1)
+    middles = edge * np.arange(-far, far + 1, dtype=np.float64)
     nearest = np.maximum(np.abs(middles) - 0.5 * edge, 0.0)
     bends = np.stack(np.meshgrid(middles, middles, indexing="ij"), axis=-1)
     shares = np.arange(1, POINTS + 1) / POINTS

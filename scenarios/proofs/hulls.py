@@ -27,6 +27,8 @@ class Hulls(NamedTuple):
     """All of them, shape (V, 3), [m]."""
     spans: npt.NDArray[np.int64]
     """First vertex of each obstacle and the one after its last, shape (m, 2)."""
+    middles_m: FloatArray
+    """Means of their vertices, shape (m, 3), [m]."""
     reaches_m: FloatArray
     """What is nearer to a hull than this touches an arm whose backbone it belongs to, shape (m,), [m]."""
     extents_m: FloatArray
@@ -45,6 +47,7 @@ def pack_hulls(obstacles: Sequence[Obstacle], arm_radius_m: float, until_s: floa
     return Hulls(
         vertices_m=np.concatenate([np.empty((0, 3)), *vertices]),
         spans=np.column_stack([ends[:-1], ends[1:]]).astype(np.int64),
+        middles_m=np.array([corners.mean(axis=0) for corners in vertices]).reshape(-1, 3),
         reaches_m=radii + arm_radius_m - _ROUNDING_PER_M * speeds * until_s,
         extents_m=np.array([np.linalg.norm(corners, axis=1).max() for corners in vertices]),
         speeds_m_s=speeds,

@@ -60,7 +60,7 @@ class SectionTube:
         self.cells, self.step_s, self._steps = cells, step_s, 0
         self.latest_s = min(bound.latest_s, scenario.time_limit_s + LATE_S)
         looks = int(self.latest_s / step_s) + 2
-        self._centers_m = positions(scenario.obstacles, step_s * np.arange(looks))
+        self._centers_m = positions(scenario.obstacles, step_s * np.arange(looks, dtype=np.float64))
         turn = allowance.rate_rad_s * step_s
         self._offsets = cells.offsets(turn) if turn <= MAX_SPREAD * cells.edge_rad else None
         # A point at share s of the section moves by s^2 / 2 of its length per radian at most: docs/audit.md.
@@ -73,7 +73,10 @@ class SectionTube:
         ends = cells.points_m[:, :, -1]
         self._from_start_m = np.linalg.norm(ends - arm.tip(scenario.start), axis=-1)
         self._from_goal_m = np.linalg.norm(ends - scenario.goal, axis=-1) - scenario.goal_tolerance_m - ARRIVAL_SLACK_M
-        self._until_s = np.full(cells.allowed.shape, -1.0)
+        self._until_s, self._culprits = (
+            np.full(cells.allowed.shape, -1.0),
+            np.zeros(cells.allowed.shape, dtype=np.int16),
+        )
         self.alive: npt.NDArray[np.bool_] = cells.around(scenario.start[:2]) & cells.allowed
         self._drop()
 
@@ -111,7 +114,15 @@ class SectionTube:
         self.alive &= self._from_goal_m <= self._rest_m + to_go_m
         centers, points = self._centers_m[self._steps], self.cells.points_m
         _kernels.strike(
-            self.alive, self._until_s, self.time_s, points, self._spacing_m, self._shifts_m, centers, self._hulls
+            self.alive,
+            self._until_s,
+            self._culprits,
+            self.time_s,
+            points,
+            self._spacing_m,
+            self._shifts_m,
+            centers,
+            self._hulls,
         )
 
 

@@ -56,6 +56,7 @@ class SectionsTube:
         bent = [coarse.around(scenario.start[k : k + 2])[coarse.allowed] for k in (0, 2)]
         self.alive: npt.NDArray[np.bool_] = np.outer(*bent)
         self._until_s = np.full(self.alive.shape, -1.0, dtype=np.float32)
+        self._culprits = np.zeros(self.alive.shape, dtype=np.int16)
         self._strike()
 
     @property
@@ -90,6 +91,7 @@ class SectionsTube:
         self.left, self.may_arrive = _kernels.strike_pairs(
             self.alive,
             self._until_s,
+            self._culprits,
             self.time_s,
             self._held(),
             self._frames,

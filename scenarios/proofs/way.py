@@ -29,17 +29,19 @@ def earliest_arrival_s(scenario: Scenario, hulls: Hulls, allowance: Allowance) -
         looks = int(np.clip(np.ceil(earliest / _LOOK_S), 1, _MAX_LOOKS)) + 1
         times = np.linspace(0.0, min(earliest, scenario.time_limit_s), looks)
         centers = positions(scenario.obstacles, times)
-        earliest = _kernels.way_blocked_until(
-            earliest,
-            scenario.time_limit_s + 1.0,
-            times,
-            centers,
-            hulls,
-            tip,
-            goal,
-            allowance.stray_m,
-            arrival_m,
-            allowance.tip_speed_m_s,
+        earliest = float(
+            _kernels.way_blocked_until(
+                earliest,
+                scenario.time_limit_s + 1.0,
+                times,
+                centers,
+                hulls,
+                tip,
+                goal,
+                allowance.stray_m,
+                arrival_m,
+                allowance.tip_speed_m_s,
+            )
         )
         if earliest < known + _GAIN_S:
             return earliest
