@@ -15,6 +15,7 @@ from scenarios.world import positions
 _LOOK_S = 0.05
 _MAX_LOOKS = 2_000
 _GAIN_S = 1e-3  # what delays arrival by less is left at that
+_ROUNDS = 500  # what is not proven by then is left at that too
 
 
 def earliest_arrival_s(scenario: Scenario, hulls: Hulls, allowance: Allowance) -> float:
@@ -23,7 +24,7 @@ def earliest_arrival_s(scenario: Scenario, hulls: Hulls, allowance: Allowance) -
     arrival_m = scenario.goal_tolerance_m + ARRIVAL_SLACK_M + allowance.stray_m
     way_m = float(np.linalg.norm(goal - tip))
     earliest = max(0.0, (way_m - arrival_m - allowance.stray_m) / allowance.tip_speed_m_s)
-    while earliest <= scenario.time_limit_s + LATE_S:
+    for _ in range(_ROUNDS):
         known = earliest
         earliest = goal_free_s(scenario, hulls, earliest, allowance.stray_m)
         looks = int(np.clip(np.ceil(earliest / _LOOK_S), 1, _MAX_LOOKS)) + 1
@@ -43,20 +44,25 @@ def earliest_arrival_s(scenario: Scenario, hulls: Hulls, allowance: Allowance) -
                 allowance.tip_speed_m_s,
             )
         )
-        if earliest < known + _GAIN_S:
-            return earliest
-    return np.inf
+        if earliest < known + _GAIN_S or earliest > scenario.time_limit_s:
+            break
+    return _or_never(earliest, scenario)
 
 
 def goal_free_s(scenario: Scenario, hulls: Hulls, from_s: float, stray_m: float) -> float:
     """Time from ``from_s`` on until which some obstacle covers the goal's whole ball [s]; inf: all the time."""
     arrival_m = scenario.goal_tolerance_m + ARRIVAL_SLACK_M + stray_m
     time_s = from_s
-    while time_s <= scenario.time_limit_s + LATE_S:
+    for _ in range(_ROUNDS):
         centers = positions(scenario.obstacles, np.array([time_s]))[0]
         # An obstacle that covers the ball with this much to spare does so for as long as it takes to run so far.
         spared = _kernels.goal_covered_for(scenario.goal, arrival_m, centers, hulls)
-        if spared < _GAIN_S:
-            return time_s
+        if spared < _GAIN_S or time_s > scenario.time_limit_s:
+            break
         time_s += spared
-    return np.inf
+    return _or_never(time_s, scenario)
+
+
+def _or_never(time_s: float, scenario: Scenario) -> float:
+    """``time_s``; inf when that is too late."""
+    return time_s if time_s <= scenario.time_limit_s + LATE_S else np.inf
