@@ -20,6 +20,10 @@ LEAST_SHARE = 0.2
 """Parts under way that have taken long already are taken to need this share of their time still."""
 
 
+LATE = 5.0
+"""Parts that take more than so many times what they should are said to be late."""
+
+
 class Warming(Protocol):
     """A part of the warm-up."""
 
@@ -96,6 +100,9 @@ class Compilation:
         pace = self._spent_s / self._typical_s if self._typical_s else 1.0
         left_s = sum(max(pace * t - (now_s - begun_s), LEAST_SHARE * pace * t) for begun_s, t in self._running.values())
         left_s += sum(pace * part.typical_s for part in waiting)
+        late_s = min(now_s - begun_s for begun_s, _ in self._running.values())
+        if not waiting and late_s > LATE * max(pace * typical_s for _, typical_s in self._running.values()):
+            return f"warming up: {', '.join(names)}; {late_s:.0f} s so far, longer than usual: it may hang"
         others = f" and {len(waiting)} more" if waiting else ""
         return f"compiling, once: {', '.join(names)}{others}; about {left_s / len(running):.0f} s to go"
 

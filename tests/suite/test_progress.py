@@ -42,8 +42,13 @@ def test_what_was_only_loaded_says_nothing_about_the_pace() -> None:
 
 
 def test_it_never_says_that_nothing_is_left() -> None:
-    *_, said = sentences((0.0, PARTS[:1], []), (500.0, PARTS[:1], []))
+    *_, said = sentences((0.0, PARTS[:1], []), (40.0, PARTS[:1], []))
     assert said.endswith("about 2 s to go")
+
+
+def test_what_takes_far_too_long_may_hang() -> None:
+    *_, said = sentences((0.0, PARTS[:1], []), (55.0, PARTS[:1], []))
+    assert said == "warming up: a; 55 s so far, longer than usual: it may hang"
 
 
 def test_log_lines_are_few(capsys: pytest.CaptureFixture[str]) -> None:
