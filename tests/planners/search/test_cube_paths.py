@@ -84,3 +84,21 @@ def test_with_room_to_grow_the_answer_is_the_same() -> None:
     again = _kernels.plan(layers, scene, fine.cube_of(goal), 6, reading)
     for one, other in zip(first, again, strict=True):
         np.testing.assert_array_equal(one, other)
+
+
+@pytest.mark.parametrize(
+    ("spacing", "horizon", "crowd", "seeds"),
+    [(0.5, 3, 8, range(100)), (0.5, 4, 8, [228]), (0.5, 5, 12, [502, 686]), (0.628, 4, 12, [542])],
+)
+def test_a_chained_path_can_always_be_followed(spacing: float, horizon: int, crowd: int, seeds: list[int]) -> None:
+    """Paths that meet in a cube bring other configurations there; the seeds named are some where that matters."""
+    fine = enumerated_space(ARM, spacing)
+    layers, reading = empty_layers(3, len(fine.bends_rad), horizon), _kernels.Reading(_kernels.CHAINED, True, True)
+    found = 0
+    for seed in seeds:
+        q, goal, world = situation(seed, horizon, crowd)
+        scene = scene_of(ARM, fine, q, 0.0, world, horizon)
+        layers, (path, states) = call(_kernels.plan, layers, scene, fine.cube_of(goal), horizon, reading)
+        assert len(states) == len(path), seed
+        found += len(path) > 0
+    assert found > len(seeds) / 2
