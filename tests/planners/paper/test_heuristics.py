@@ -34,7 +34,9 @@ def planner_of(name: str, scenario: Scenario) -> StaticPathPlanner:
     problem = SpaceTimeProblem(query, 1.0)
     problem.update(query, 0.0)
     spec = parse_planner(name)
-    return PLANNERS[spec.name].build(problem, spec.settings)
+    planner = PLANNERS[spec.name](problem, spec.settings)
+    assert isinstance(planner, StaticPathPlanner)
+    return planner
 
 
 @pytest.mark.parametrize("limits", [False, True])
