@@ -1,12 +1,14 @@
 import os
 
 import pytest
-from fakes import behave, make_parts, make_tasks
+from fakes import behave, make_parts, make_tasks, place_of
 from test_processes import outcomes_of, rows_of, without_timings
 
 from suite.backends.job import Job, Part
 from suite.backends.local import InProcess
 from suite.trial.task import TrialResult, TrialTask
+
+THREE = place_of(r'ValueError("three\nlines")')
 
 
 def test_rows_are_those_of_worker_processes() -> None:
@@ -15,10 +17,13 @@ def test_rows_are_those_of_worker_processes() -> None:
     here = {task.key: result.row for task, result in InProcess().run(Job(behave, 60.0, parts), tasks)}
     assert without_timings(here) == without_timings(rows_of(list(hows), trials=3, parts=parts))
     found = outcomes_of(here)
-    assert found["raises"] == ("planner_error", "in warm-up: ValueError: three")
-    assert found["leaves"] == ("planner_error", "in warm-up: SystemExit: 3")
-    assert found["raise"] == ("planner_error", "ValueError: two")
-    assert found["leave"] == ("planner_error", "SystemExit: 5")
+    assert found["raises"] == (
+        "planner_error",
+        f"in warm-up: ValueError: three lines{THREE}",
+    )
+    assert found["leaves"] == ("planner_error", "in warm-up: SystemExit: 3" + place_of("SystemExit(3)"))
+    assert found["raise"] == ("planner_error", "ValueError: two lines" + place_of(r'ValueError("two\nlines")'))
+    assert found["leave"] == ("planner_error", "SystemExit: 5" + place_of("SystemExit(5)"))
 
 
 def test_a_planner_is_warmed_up_once_and_right_before_its_first_trial() -> None:

@@ -6,7 +6,7 @@ from functools import partial
 from pathlib import Path
 
 import pytest
-from fakes import behave, heavy_imports, make_parts, make_tasks, warm, warm_after_a_death
+from fakes import behave, heavy_imports, make_parts, make_tasks, place_of, warm, warm_after_a_death
 
 from suite.backends import process
 from suite.backends.job import Job, Part
@@ -14,6 +14,8 @@ from suite.backends.processes import Processes
 from suite.trial.columns import TIMING_NAMES, Row
 
 Rows = dict[tuple[str, str], Row]
+
+THREE = place_of(r'ValueError("three\nlines")')
 
 
 def rows_of(
@@ -49,10 +51,10 @@ def test_hangs_and_crashes_are_rows_and_the_rest_goes_on() -> None:
     rows = rows_of(["fine", "hang", "raise", "die", "quit", "leave"], hang_limit_s=0.5)
     found = outcomes_of(rows)
     assert found["hang"] == ("planner_hung", "killed after 0.5 s")
-    assert found["raise"] == ("planner_error", "ValueError: two")
+    assert found["raise"] == ("planner_error", "ValueError: two lines" + place_of(r'ValueError("two\nlines")'))
     assert found["die"] == ("planner_error", "the process died: SIGKILL")
     assert found["quit"] == ("planner_error", "the process died: exit code 0")
-    assert found["leave"] == ("planner_error", "SystemExit: 5")
+    assert found["leave"] == ("planner_error", "SystemExit: 5" + place_of("SystemExit(5)"))
     assert found["fine"][0] in {"reached", "collided"}
     for row in rows.values():
         assert row["scenario_id"] == "fake-0000"
@@ -79,11 +81,14 @@ def test_a_planner_that_fails_in_its_warm_up_costs_its_own_rows_alone(workers: i
     rows = rows_of(list(hows), trials=3, workers=workers, hang_limit_s=1.0, parts=make_parts(hows))
     assert len(rows) == 18
     found = outcomes_of(rows)
-    assert found["raises"] == ("planner_error", "in warm-up: ValueError: three")
+    assert found["raises"] == (
+        "planner_error",
+        f"in warm-up: ValueError: three lines{THREE}",
+    )
     assert found["hangs"] == ("planner_hung", "in warm-up: killed after 1 s")
     assert found["dies"] == ("planner_error", "in warm-up: the process died: SIGKILL")
     assert found["quits"] == ("planner_error", "in warm-up: the process died: exit code 7")
-    assert found["leaves"] == ("planner_error", "in warm-up: SystemExit: 3")
+    assert found["leaves"] == ("planner_error", "in warm-up: SystemExit: 3" + place_of("SystemExit(3)"))
     for row in rows.values():
         assert (row["planner"] == "fine") == (row["outcome"] in {"reached", "collided"})
     alone = rows_of(["fine"], trials=3, workers=workers)
@@ -107,7 +112,7 @@ def test_a_process_killed_in_a_warm_up_is_started_again(tmp_path: Path) -> None:
 
 def test_what_every_trial_needs_and_cannot_have_is_in_every_row() -> None:
     found = outcomes_of(rows_of(["a", "b"], parts=[Part("audit", partial(warm, "raise"), 1.0)]))
-    assert set(found.values()) == {("planner_error", "in warm-up, audit: ValueError: three")}
+    assert set(found.values()) == {("planner_error", f"in warm-up, audit: ValueError: three lines{THREE}")}
 
 
 def test_a_part_that_only_saves_work_may_fail() -> None:
