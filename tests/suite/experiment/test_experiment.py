@@ -139,7 +139,7 @@ def test_the_same_name_twice_is_refused(tmp_path) -> None:
 
 def test_table1_is_the_papers() -> None:
     experiment = make_experiment(**PRESETS["table1"])
-    assert experiment.planners == ("t2", "t3", "h", "hs", "pf")
+    assert experiment.planners == ("t2", "t3", "temporal-best", "h", "hs", "pf")
     assert (experiment.obstacles, experiment.trials, experiment.seed) == ((1, 3, 5, 6), 100, 0)
 
 
