@@ -1,5 +1,6 @@
 """Pages whose code is run: every block, in the order in which it stands there."""
 
+import csv
 import os
 import re
 import subprocess
@@ -78,8 +79,8 @@ def test_every_block_does_what_it_says(block: Block, folder: Path) -> None:
 
 def test_every_trial_among_no_obstacles_arrived(folder: Path) -> None:
     for name in ("mine-3", "mine-2"):
-        rows = (folder / "work" / "results" / name / "table.csv").read_text().splitlines()
-        row = dict(zip(rows[0].split(","), rows[1].split(","), strict=True))
+        with (folder / "work" / "results" / name / "table.csv").open(encoding="utf-8", newline="") as table:
+            row = next(csv.DictReader(table))
         assert (row["planner"], row["trials"]) == ("Mine", "4")
         assert float(row["success_executable_percent"]) == 100.0
 
