@@ -35,7 +35,7 @@ def random_arm(rng: np.random.Generator) -> ContinuumArm:
         n_sections=int(rng.integers(1, 5)),
         section_length_m=rng.uniform(0.05, 0.4),
         radius_m=rng.uniform(0.004, 0.03),
-        max_bend_rad=rng.choice([np.pi, rng.uniform(0.8, np.pi)]),
+        max_bend_rad=rng.choice([np.pi, rng.uniform(0.8, np.pi), 1e-3]),
         max_bend_rate_rad_s=rng.choice([0.5, rng.uniform(0.1, 2.0)]),
     )
 

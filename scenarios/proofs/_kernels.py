@@ -8,6 +8,7 @@ from scenarios.kernels.jit import bare_kernel, kernel
 
 NEAR_TRIES = 64  # a hull that is not shown to be near by then counts as far: nothing is proven by it
 HALVINGS = 40
+WHILE_S = 2.0  # obstacles that cannot be at section 1 for this long are not looked at
 LONGEST_S = 1.5  # a pair whose part was free is looked at again after this: that part may be gone
 
 
@@ -141,15 +142,18 @@ def spread(alive, allowed, offsets, out):
     """
     n = alive.shape[0]
     out[:] = alive
-    for i in range(n):
-        for j in range(n):
-            if not alive[i, j]:
-                continue
-            at_rim = False
-            for a in range(max(i - 1, 0), min(i + 2, n)):
-                for b in range(max(j - 1, 0), min(j + 2, n)):
-                    at_rim |= not alive[a, b]
-            if not at_rim:
+    for i in range(1, n - 1):  # the outermost cells are beyond the largest bend
+        for j in range(1, n - 1):
+            if not alive[i, j] or (
+                alive[i - 1, j]
+                and alive[i + 1, j]
+                and alive[i, j - 1]
+                and alive[i, j + 1]
+                and alive[i - 1, j - 1]
+                and alive[i - 1, j + 1]
+                and alive[i + 1, j - 1]
+                and alive[i + 1, j + 1]
+            ):
                 continue
             for o in range(offsets.shape[0]):
                 a, b = i + offsets[o, 0], j + offsets[o, 1]
@@ -164,7 +168,7 @@ def strike(alive, until, culprits, now, points, spacing, shifts, centers, hulls)
     Args:
         alive: Cells that may be had; changed.
         until: Time before which a cell need not be looked at, shape (N, N), [s]; changed.
-        culprits: Obstacle that hit a cell when it was last dropped: the first to look at; shape (N, N); changed.
+        culprits: Which of the obstacles looked at hit a cell last: the first to look at; shape (N, N); changed.
         now: The time [s].
         points: Backbone points at the cells' middles, shape (N, N, S, 3), [m].
         spacing: How far one is from the next along the backbone [m].
@@ -172,25 +176,38 @@ def strike(alive, until, culprits, now, points, spacing, shifts, centers, hulls)
         centers: Obstacle centres now, shape (m, 3), [m].
         hulls: The obstacles.
     """
-    frame = np.eye(3)
+    # Obstacles that no bend will bring into touch for a while are left to a later look at everything.
+    frame, near, count, later = np.eye(3), np.empty(centers.shape[0], np.int64), 0, math.inf
+    for j in range(centers.shape[0]):
+        apart = math.sqrt(centers[j, 0] ** 2 + centers[j, 1] ** 2 + centers[j, 2] ** 2)
+        gap = apart - spacing * points.shape[2] - hulls.extents_m[j] - hulls.reaches_m[j]
+        if gap > WHILE_S * hulls.speeds_m_s[j]:
+            later = min(later, gap / hulls.speeds_m_s[j])
+        else:
+            near[count] = j
+            count += 1
     for i in range(alive.shape[0]):
         for j in range(alive.shape[1]):
             if alive[i, j] and until[i, j] <= now:
-                free, culprits[i, j] = _free_for(points[i, j], spacing, shifts, centers, frame, hulls, culprits[i, j])
-                until[i, j] = now + free
+                free, culprits[i, j] = _free_for(
+                    points[i, j], spacing, shifts, centers, near[:count], frame, hulls, culprits[i, j]
+                )
+                until[i, j] = now + min(free, later)
                 alive[i, j] = free >= 0.0
 
 
 @bare_kernel
-def _free_for(points, spacing, shifts, centers, frame, hulls, first):
+def _free_for(points, spacing, shifts, centers, near, frame, hulls, first):
     """How long ``points`` (S, 3), each anywhere within its shift (S,), will not all be hit for certain [s].
 
     Points and centres (m, 3) are given in a frame (3, 3). Negative when the points are hit now: one of them, wherever
-    it is, is in touch with an obstacle. Obstacle ``first`` is looked at first; returns as well which one it is.
+    it is, is in touch with one of the obstacles ``near``. Of these number ``first`` is looked at first; returns as well
+    which one it is.
     """
     free = math.inf
-    for turn in range(centers.shape[0]):
-        j = (first + turn) % centers.shape[0]
+    for turn in range(near.shape[0]):
+        number = (first + turn) % near.shape[0]
+        j = near[number]
         s = 0
         while s < points.shape[0]:
             x, y, z = points[s, 0] - centers[j, 0], points[s, 1] - centers[j, 1], points[s, 2] - centers[j, 2]
@@ -202,7 +219,7 @@ def _free_for(points, spacing, shifts, centers, frame, hulls, first):
                 wz = frame[2, 0] * x + frame[2, 1] * y + frame[2, 2] * z
                 upper, lower = hull_distance(hulls, j, wx, wy, wz, reach)
                 if upper < reach:
-                    return -1.0, j
+                    return -1.0, number
                 gap = lower - reach
             # The gap shrinks no faster than the backbone goes on: points for which half of it is left are passed over.
             half = max(0.5 * gap, 0.0)
@@ -262,7 +279,7 @@ def strike_pairs(
     Args:
         alive: Pairs of cells of sections 1 and 2; changed.
         until: Time before which a pair need not be looked at, shape (K, K), [s]; changed.
-        culprits: Obstacle that hit a pair when it was last dropped, shape (K, K); changed.
+        culprits: Obstacle that hit a pair last: the first to look at; shape (K, K); changed.
         now: The time [s].
         parts: Parts of the cells of section 1 that may be had, shape (K, P).
         frames: Frames at the end of section 1 in the middle of each part, shape (K, P, 3, 3).
@@ -283,7 +300,7 @@ def strike_pairs(
     count, last = alive.shape[0], points.shape[1] - 1
     middle = parts.shape[1] // 2
     looked, local = np.empty(parts.shape[1], np.int64), np.empty((parts.shape[1], centers.shape[0], 3))
-    left, may_arrive = 0, False
+    everyone, left, may_arrive = np.arange(centers.shape[0]), 0, False
     for a in range(count):
         if not alive[a].any():
             continue
@@ -312,7 +329,9 @@ def strike_pairs(
                 free = -1.0
                 for k in range(used):
                     frame = frames[a, looked[k]]
-                    free, culprits[a, c] = _free_for(points[c], spacing, shifts, local[k], frame, hulls, culprits[a, c])
+                    free, culprits[a, c] = _free_for(
+                        points[c], spacing, shifts, local[k], everyone, frame, hulls, culprits[a, c]
+                    )
                     if free >= 0.0:
                         break
                 if free < 0.0:

@@ -22,7 +22,7 @@ class Cells(NamedTuple):
     middles_rad: FloatArray
     """Of the cells along either axis, shape (N,), [rad]."""
     allowed: npt.NDArray[np.bool_]
-    """Cells of which some part is within the largest bend, ``STRAY_RAD`` included, shape (N, N)."""
+    """Cells of which some part is within the largest bend, ``STRAY_RAD`` included, shape (N, N); none outermost."""
     points_m: FloatArray
     """Backbone points at the cells' middles, in the section's base frame, shape (N, N, POINTS, 3), [m]."""
     shares: FloatArray
@@ -50,8 +50,8 @@ class Cells(NamedTuple):
 @functools.lru_cache(maxsize=4)
 def cells_of(length_m: float, max_bend_rad: float, per_radius: int) -> Cells:
     """Cells of a section; ``per_radius`` of them, side by side, are as long as the largest bend."""
-    edge = max_bend_rad / per_radius
-    far = int(np.ceil((max_bend_rad + STRAY_RAD) / edge))
+    limit, far = max_bend_rad + STRAY_RAD, per_radius + 1
+    edge = limit / per_radius
     middles = edge * np.arange(-far, far + 1, dtype=np.float64)
     nearest = np.maximum(np.abs(middles) - 0.5 * edge, 0.0)
     bends = np.stack(np.meshgrid(middles, middles, indexing="ij"), axis=-1)
@@ -59,7 +59,7 @@ def cells_of(length_m: float, max_bend_rad: float, per_radius: int) -> Cells:
     return Cells(
         edge_rad=edge,
         middles_rad=middles,
-        allowed=np.hypot(nearest[:, None], nearest) <= max_bend_rad + STRAY_RAD,
+        allowed=np.hypot(nearest[:, None], nearest) <= limit,
         points_m=np.ascontiguousarray(arc_points(bends[..., None, :] * shares[:, None]) * (length_m * shares)[:, None]),
         shares=shares,
     )

@@ -4,15 +4,17 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from just_missed import Solved, just_missed, random_arm
+from just_missed import OVER, Solved, just_missed, random_arm
 from strategies import ARM, seeds
 
+from scenarios import ContinuumArm, Scenario
 from scenarios.proofs import Bound, prove, section, sections
 from scenarios.proofs.allowance import Allowance
 from scenarios.proofs.cells import cells_of
 from scenarios.proofs.hulls import pack_hulls
 from scenarios.proofs.section import SectionTube
 from scenarios.proofs.sections import SectionsTube
+from suite.auditor import audit
 
 NOTHING = Bound(0.0, np.inf)
 
@@ -90,3 +92,25 @@ def test_fine_cells_are_as_sound(monkeypatch: pytest.MonkeyPatch) -> None:
         solved = just_missed(rng, ARM, 10)
         if solved:
             assert_allowed(prove(solved.scenario).executable, solved.judged.arrival_time_s)
+
+
+def test_a_tip_that_goes_nearly_straight_as_fast_as_the_audit_lets_it_is_in_time() -> None:
+    ends = np.array([[-0.05, 0.0], [0.05, 0.0]])
+    arm = ContinuumArm(n_sections=1, section_length_m=0.4)
+    start, goal = arm.tips(ends)
+    middle = arm.tips([[-1e-4, 0.0], [1e-4, 0.0]])  # where it is fastest
+    arrival_s = 1.0
+    speed = np.linalg.norm(middle[1] - middle[0]) / (2e-4 / 0.1) / arrival_s
+    limited = arm.model_copy(update={"max_tip_speed_m_s": float(speed / OVER)})
+    scenario = Scenario(
+        id="straight",
+        arm=limited,
+        start_rad=tuple(ends[0]),
+        goal_m=tuple(goal),
+        goal_tolerance_m=1e-6,
+        time_limit_s=1.0,
+    )
+    judged = audit(scenario, [0.0, arrival_s], ends)
+    assert judged.executable.success
+    assert arrival_s < (np.linalg.norm(goal - start) - 1e-6) / limited.max_tip_speed_m_s  # not without the slack
+    assert_allowed(prove(scenario).executable, judged.arrival_time_s)

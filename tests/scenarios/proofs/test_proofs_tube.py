@@ -9,12 +9,13 @@ from strategies import seeds
 from twins.section_tube import tube as twin_tube
 from twins.shapes import signed_distance
 
-from scenarios import Line, Obstacle, Scenario
-from scenarios.proofs import Bound, _kernels
+from scenarios import ContinuumArm, Line, Obstacle, Scenario, clearances, sample_world
+from scenarios.proofs import Bound, _kernels, sections
 from scenarios.proofs.allowance import STRAY_RAD, Allowance
 from scenarios.proofs.cells import POINTS, Cells, cells_of
 from scenarios.proofs.hulls import pack_hulls
 from scenarios.proofs.section import SectionTube
+from scenarios.proofs.sections import SectionsTube
 
 LONG_S = 1e3
 
@@ -95,3 +96,40 @@ def test_offsets_are_those_of_cells_that_come_as_near(rad: float) -> None:
         for j in range(-9, 10):
             gap = edge * np.hypot(max(abs(i) - 1, 0), max(abs(j) - 1, 0))
             assert ((i, j) in found) == (gap <= rad), (i, j)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_bends_of_a_pair_of_cells_that_is_dropped_are_hit(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sections, "PER_RADIUS", 5)
+    rng = np.random.default_rng(seed)
+    places = rng.normal(size=(4, 3))
+    places *= rng.uniform(0.14, 0.25, size=(4, 1)) / np.linalg.norm(places, axis=1, keepdims=True)
+    motions = [Line(point_m=tuple(place), velocity_m_s=(0.0, 0.0, 0.0)) for place in places]
+    scenario = Scenario(
+        id="full",
+        arm=ContinuumArm(n_sections=3, radius_m=0.03),
+        start_rad=(0.0,) * 6,
+        goal_m=(0.0, 0.0, 0.4),
+        obstacles=tuple(Obstacle(radius_m=rng.uniform(0.06, 0.09), motion=motion) for motion in motions),
+    )
+    tube = SectionsTube(scenario, pack_hulls(scenario.obstacles, 0.03, 1.0), Bound(0.0, np.inf))
+    # All that the first look leaves out of all there is; start and goal apart.
+    tube._rest_m = tube.first._rest_m = np.inf
+    tube.alive[:] = True
+    tube.first.alive = tube.first.cells.allowed.copy()
+    tube.first._until_s[:] = tube._until_s[:] = -1.0
+    tube.first._drop()
+    tube._strike()
+    coarse = cells_of(0.15, np.pi, 5)
+    middles = coarse.middles_rad[np.argwhere(coarse.allowed)]
+    dropped = np.argwhere(~tube.alive)
+    assert 300 < len(dropped) < tube.alive.size
+    picked = dropped[rng.integers(len(dropped), size=20_000)]
+    # Corners count most: anywhere in the cells, more often near their rims.
+    inside = 0.5 * coarse.edge_rad * np.sign(rng.normal(size=(20_000, 4))) * rng.uniform(size=(20_000, 1)) ** 0.2
+    bends = middles[picked].reshape(-1, 4) + inside
+    bends = bends[(np.linalg.norm(bends.reshape(-1, 2, 2), axis=2) <= np.pi).all(axis=1)]
+    world = sample_world(scenario.obstacles, 0.0, 1.0, 1.0)
+    gaps = clearances(ContinuumArm(n_sections=2, radius_m=0.03), bends, 0.0, world)
+    assert gaps.max() < 0.0
+    assert gaps.max() > -0.02  # and some hardly
