@@ -43,6 +43,7 @@ def run_experiment(
     hang_limit_s: float = DEFAULT_HANG_LIMIT_S,
     fresh: bool = False,
     keep_stale: bool = False,
+    quiet: bool = False,
 ) -> pd.DataFrame:
     """Run what is left of an experiment and write its files.
 
@@ -55,6 +56,7 @@ def run_experiment(
             warm-up, which has two minutes at the least: it may have to compile.
         fresh: Start over, whatever an earlier run has left in the folder.
         keep_stale: Use rows that other code has made as they are.
+        quiet: Say nothing on the way.
 
     Returns:
         The summary, one row per number of obstacles, conditions and planner.
@@ -69,7 +71,7 @@ def run_experiment(
     tasks = list(experiment.tasks(scenarios))
     manifest = make_manifest(experiment, scenarios)
     with open_run(folder, manifest, tasks, fresh=fresh, keep_stale=keep_stale) as (journal, standing):
-        for line in standing.notes():
+        for line in [] if quiet else standing.notes():
             note(line)
         finished = journal.finished()
         left = [task for task in tasks if task.key not in finished]
@@ -77,7 +79,7 @@ def run_experiment(
         threading.Thread(target=importlib.import_module, args=["suite.show.derived"], daemon=True).start()
         try:
             if left:
-                _run(left, journal, workers, hang_limit_s)
+                _run(left, journal, workers, hang_limit_s, quiet=quiet)
             from suite.show.derived import write_derived
 
             return write_derived(folder, journal, scenarios, experiment.codes())
@@ -85,7 +87,9 @@ def run_experiment(
             raise RunInterrupted(len(journal.finished()), len(tasks)) from None
 
 
-def _run(tasks: Sequence[TrialTask], journal: Journal, workers: int | Processes, hang_limit_s: float) -> None:
+def _run(
+    tasks: Sequence[TrialTask], journal: Journal, workers: int | Processes, hang_limit_s: float, *, quiet: bool
+) -> None:
     """Run every task and store each result as it comes."""
     for task in tasks:
         if task.spec.failure:
@@ -93,7 +97,7 @@ def _run(tasks: Sequence[TrialTask], journal: Journal, workers: int | Processes,
     tasks = [task for task in tasks if not task.spec.failure]
     backend: Backend = InProcess() if workers == 0 else Processes(workers) if isinstance(workers, int) else workers
     job = Job(run_trial, hang_limit_s, warm_up_parts(tasks), max(LEAST_WARM_UP_S, hang_limit_s))
-    with progress(len(tasks)) as report, closing(backend.run(job, tasks, report.warm_up)) as finished:
+    with progress(len(tasks), quiet=quiet) as report, closing(backend.run(job, tasks, report.warm_up)) as finished:
         for task, result in finished:
             journal.add(task, result)
             report(task.spec.label)

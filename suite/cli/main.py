@@ -21,6 +21,7 @@ from suite.cli.generate import generate
 from suite.cli.new_planner import new_planner
 from suite.cli.options import EXIT_INTERRUPTED, EXIT_USAGE, say
 from suite.cli.planners import planners
+from suite.cli.plot import plot
 from suite.cli.predictors import predictors
 from suite.cli.run import run
 from suite.cli.table import table
@@ -31,7 +32,7 @@ app = typer.Typer(
     rich_markup_mode=None,  # rich help would double the time of --help
     pretty_exceptions_enable=False,
 )
-for verb in (run, table, generate, planners, new_planner, check_planner, predictors, check, audit, version):
+for verb in (run, table, plot, generate, planners, new_planner, check_planner, predictors, check, audit, version):
     app.command()(verb)
 
 

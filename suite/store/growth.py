@@ -15,14 +15,19 @@ class Standing:
 
     chosen: dict[str, Code] = field(default_factory=dict)
     """By the trials' keys, in the order asked for: the code whose row stands, or will stand, for each."""
-    there: int = 0
-    """Trials that have such a row."""
+    done: Counter[str] = field(default_factory=Counter)
+    """Trials by planner that have such a row."""
     stale: Counter[str] = field(default_factory=Counter)
     """Trials by planner whose rows are of other code of that planner: they run again."""
     kept: int = 0
     """Trials whose rows are of other code and are used as they are."""
     other_houses: Counter[str] = field(default_factory=Counter)
     """Trials whose rows are of another house, by its hash: for the user to decide about."""
+
+    @property
+    def there(self) -> int:
+        """Trials that have such a row."""
+        return self.done.total()
 
     def notes(self) -> list[str]:
         """What there is to tell the user, a line each."""
@@ -51,10 +56,10 @@ def settle(tasks: Iterable[TrialTask], made: Mapping[str, Sequence[Code]], *, ke
         codes = made.get(task.key, ())
         code = task.code
         if code in codes:
-            standing.there += 1
+            standing.done[task.spec.label] += 1
         elif codes and keep_stale:
             code = codes[-1]
-            standing.there += 1
+            standing.done[task.spec.label] += 1
             standing.kept += 1
         elif any(other.house == code.house for other in codes):
             standing.stale[task.spec.label] += 1

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from suite.errors import SuiteError
 from suite.experiment.code import House
 from suite.store.schema import open_to_read, open_to_write, remember_house, transaction
-from suite.trial.columns import COLUMN_NAMES, COLUMNS, Row, complete_row
+from suite.trial.columns import COLUMN_NAMES, COLUMNS, CONDITIONS, Row, complete_row
 from suite.trial.task import Code, TrialResult, TrialTask
 
 _NAMES = ", ".join(f'"{name}"' for name in COLUMN_NAMES)
@@ -30,6 +30,8 @@ class Executed(NamedTuple):
     """Shape (k,)."""
     configurations_rad: NDArray[np.float64]
     """Shape (k, dof)."""
+    conditions: Row
+    """Under which conditions, by the names in ``CONDITIONS``."""
 
 
 class Journal:
@@ -115,13 +117,16 @@ class Journal:
         Raises:
             SuiteError: What is stored is no trajectory.
         """
+        names = [column.name for column in CONDITIONS]
         selected = self._db.execute(
-            "SELECT scenario_id, planner, executed FROM shown ORDER BY family, n_obstacles, scenario_id, planner, key"
+            f"SELECT scenario_id, planner, executed, {', '.join(names)} FROM shown"
+            " ORDER BY family, n_obstacles, scenario_id, planner, key"
         )
-        for scenario_id, planner, blob in selected:
+        for scenario_id, planner, blob, *values in selected:
             try:
                 timed = np.load(io.BytesIO(blob), allow_pickle=False)
-                yield Executed(scenario_id, planner, timed[:, 0], timed[:, 1:])
+                conditions = dict(zip(names, values, strict=True))
+                yield Executed(scenario_id, planner, timed[:, 0], timed[:, 1:], conditions)
             except (ValueError, TypeError, EOFError, IndexError):
                 raise SuiteError(f"{self._file}: {scenario_id} {planner}: found no trajectory in it") from None
 
