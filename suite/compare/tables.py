@@ -31,6 +31,24 @@ WORLDS = ["family", "n_obstacles", *(column.name for column in WORLD)]
 ENTRANT = ["planner", *(column.name for column in OWN)]
 """What one row of a table is about, in its world."""
 
+SUMMED_UP = (
+    *WORLDS,
+    *ENTRANT,
+    "scenario_id",
+    "scenario_hash",
+    "house_code",
+    "planner_code",
+    "is_bound",
+    "outcome",
+    *(f"success_{verdict}" for verdict in VERDICTS),
+    "planning_time_s",
+    "solve_p50_s",
+    "arrival_time_s",
+    "tip_path_length_m",
+    "smoothness_paper_rad",
+)
+"""Columns of trials that a table is made from."""
+
 
 def summarize(
     trials: pd.DataFrame, planners: Sequence[str] = (), present: Mapping[str, Code] | None = None

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
@@ -12,10 +13,7 @@ from planners import is_bound
 from suite.auditor.verdicts import VERDICTS
 from suite.errors import SuiteError
 from suite.store.schema import old_margin
-from suite.trial.columns import COLUMN_NAMES, COLUMNS, CONDITIONS, Column, Row
-
-SORTED_BY = ["family", "n_obstacles", "scenario_id", "planner", *(column.name for column in CONDITIONS)]
-"""The order of rows in files, which does not depend on the order in which trials finished."""
+from suite.trial.columns import COLUMN_NAMES, COLUMNS, CONDITIONS, SORTED_BY, Column, Row
 
 _NEW_IN_TABLES = {column.name: column.dtype for column in CONDITIONS} | {"stale": "int64"}
 
@@ -39,6 +37,8 @@ TABLE_TYPES: dict[str, str] = {
 }
 """Columns of ``table.csv`` and their types."""
 
+_DTYPES = {column.name: column.dtype for column in COLUMNS}
+
 FLOAT_FORMAT = "%.9g"
 """How every number is written, so that equal rows give equal bytes."""
 
@@ -48,24 +48,33 @@ def trials_frame(rows: Iterable[Row]) -> pd.DataFrame:
 
     Numbers are rounded as they are written: what is computed from the frame can be computed from ``trials.csv``.
     """
-    # Column by column: a list of rows as dictionaries would take several times the frame's memory.
-    values: dict[str, list[object]] = {name: [] for name in COLUMN_NAMES}
+    values: dict[str, list[Any]] = {name: [] for name in COLUMN_NAMES}
     for row in rows:
         for name, value in row.items():
-            values[name].append(_as_written(value))
-    frame = pd.DataFrame({column.name: pd.Series(values.pop(column.name), dtype=column.dtype) for column in COLUMNS})
-    return frame.sort_values(SORTED_BY, ignore_index=True)
+            values[name].append(value)
+    return columns_frame(values).sort_values(list(SORTED_BY), ignore_index=True)
 
 
-def _as_written(value: object) -> object:
-    if isinstance(value, float):
-        return float(FLOAT_FORMAT % value)
-    return sys.intern(value) if isinstance(value, str) else value  # names and settings repeat in thousands of rows
+def columns_frame(columns: Mapping[str, Sequence[Any]]) -> pd.DataFrame:
+    """The same of rows that come as columns, in the order in which they come."""
+    return pd.DataFrame({name: pd.Series(_as_written(columns[name]), dtype=_DTYPES[name]) for name in columns})
 
 
-def trials_csv(trials: pd.DataFrame) -> str:
-    """The text of ``trials.csv``."""
-    return trials.to_csv(index=False, float_format=FLOAT_FORMAT, lineterminator="\n")
+def joined(frames: Iterable[pd.DataFrame], names: Sequence[str]) -> pd.DataFrame:
+    """Frames with the columns ``names``, one below the other; there may be none."""
+    return pd.concat([columns_frame(dict.fromkeys(names, ())), *frames], ignore_index=True)
+
+
+def _as_written(values: Iterable[Any]) -> list[Any]:
+    """Numbers rounded; names and settings, which repeat in thousands of rows, each held once."""
+    return [
+        float(FLOAT_FORMAT % v) if isinstance(v, float) else sys.intern(v) if isinstance(v, str) else v for v in values
+    ]
+
+
+def trials_csv(trials: pd.DataFrame, *, header: bool = True) -> str:
+    """The text of ``trials.csv``, or of some of its lines."""
+    return trials.to_csv(index=False, header=header, float_format=FLOAT_FORMAT, lineterminator="\n")
 
 
 def read_trials_csv(file: Path) -> pd.DataFrame:
@@ -122,6 +131,6 @@ def refuse_gaps(trials: pd.DataFrame, file: Path) -> pd.DataFrame:
         SuiteError: Scenario, planner or outcome is missing somewhere.
     """
     for name in ("scenario_id", "scenario_hash", "family", "n_obstacles", "planner", "outcome"):
-        if trials[name].isna().any():
+        if name in trials and trials[name].isna().any():
             raise SuiteError(f"{file}: found a trial without {name}, allowed: every trial has one")
     return trials

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Literal, NamedTuple
 
 from suite.auditor.verdicts import VERDICTS
@@ -60,6 +60,9 @@ OWN = (
 
 CONDITIONS = WORLD + OWN
 """What keeps rows of one planner apart in every table."""
+
+SORTED_BY = ("family", "n_obstacles", "scenario_id", "planner", *(column.name for column in CONDITIONS))
+"""The order of rows in files, which does not depend on the order in which trials finished."""
 
 IDENTITY = (
     Column("scenario_id", "string", "", "name of the scenario"),
@@ -142,6 +145,16 @@ def complete_row(values: Mapping[str, Any]) -> Row:
     if unknown:
         raise KeyError(f"no such column: {', '.join(unknown)}")
     return {column.name: _plain(column.dtype, values.get(column.name)) for column in COLUMNS}
+
+
+def plain_values(name: str, values: Iterable[Any]) -> list[Any]:
+    """Values of the column ``name`` as ``complete_row`` makes them, many rows at once.
+
+    Raises:
+        ValueError, TypeError: A value is not of the column's type.
+    """
+    kind = _PLAIN_TYPES[_DTYPES[name]]
+    return [None if value is None or value != value else kind(value) for value in values]
 
 
 def trial_key(row: Mapping[str, Any]) -> str:
