@@ -66,6 +66,14 @@ def present_codes(manifest: Manifest | None) -> dict[str, Code]:
     return {label: Code(str(code.get("house")), str(planner)) for label, planner in code["planners"].items()}
 
 
+def house_changes(base: Path, new: Path) -> list[str]:
+    """What has changed in the suite and its libraries from one run to another, as far as their manifests say."""
+    houses = [read_manifest(folder) or {} for folder in (base, new)]
+    if not all(isinstance(house.get("versions"), dict) and "sources" in house for house in houses):
+        return []
+    return [f"the suite: {change}" for change in changes(*houses)]
+
+
 def read_trials(folder: Path, names: Sequence[str] = COLUMN_NAMES) -> pd.DataFrame | None:
     """The trials so far: from the journal, or from ``trials.csv`` where only that was kept; None without either.
 
