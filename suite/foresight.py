@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -13,7 +14,9 @@ from planners import check_fit
 from scenarios.spec import parse_spec
 from suite.experiment.experiment import Experiment
 from suite.experiment.manifest import make_manifest
+from suite.store.growth import Standing
 from suite.store.run_folder import read_trials, standing_of
+from suite.trial.lineup import Lineup
 
 DEFAULT_TRIAL_S = 2.0
 """What a trial is taken to last where the folder has none of its planner [s]: most last between 0.2 and 10 s."""
@@ -51,11 +54,11 @@ def foresee(experiment: Experiment, folder: Path, workers: int, *, fresh: bool, 
         SuiteError, ScenarioError: The experiment cannot be run like this, as ``run_experiment`` would say.
     """
     scenarios = experiment.scenarios()
-    for arm in {scenario.arm for scenario in scenarios}:
+    for arm in scenarios.arms:
         check_fit(experiment.specs(), arm)
-    tasks = list(experiment.tasks(scenarios))
+    tasks = Lineup(partial(experiment.tasks, scenarios), range(experiment.count(len(scenarios))))
     manifest = make_manifest(experiment, scenarios)
-    standing = standing_of(folder, manifest, [] if fresh else tasks, keep_stale=keep_stale)
+    standing = Standing() if fresh else standing_of(folder, manifest, tasks, keep_stale=keep_stale)
     left = Counter(task.spec.label for task in tasks)
     left.subtract(standing.done)
     took = _took(read_trials(folder), left)

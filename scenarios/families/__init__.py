@@ -5,6 +5,7 @@ A new family is one subclass of ``Family`` and one line in ``FAMILIES``.
 
 import hashlib
 import json
+from collections.abc import Iterator
 
 import numpy as np
 from pydantic import BaseModel
@@ -51,6 +52,11 @@ def generate(family: str, n_obstacles: int, trials: int, seed: int, arm: Continu
         SpecError: Unknown family or setting.
         ScenarioError: Numbers out of range, or settings from which no scenario can be drawn.
     """
+    return list(drawn(family, n_obstacles, trials, seed, arm))
+
+
+def drawn(family: str, n_obstacles: int, trials: int, seed: int, arm: ContinuumArm | None = None) -> Iterator[Scenario]:
+    """What ``generate`` returns, one after the other: nobody needs to hold them all."""
     name, settings = parse_family(family)
     if not 0 <= n_obstacles <= 1000:
         raise ScenarioError(f"obstacles: found {n_obstacles}, allowed 0 to 1000")
@@ -60,7 +66,8 @@ def generate(family: str, n_obstacles: int, trials: int, seed: int, arm: Continu
         raise ScenarioError(f"seed: found {seed}, allowed 0 to 2^63 - 1")
     arm = arm or ContinuumArm()
     end = _ending(settings, arm)
-    return [_draw(name, settings, n_obstacles, k, seed, arm, end) for k in range(trials)]
+    for k in range(trials):
+        yield _draw(name, settings, n_obstacles, k, seed, arm, end)
 
 
 def _ending(*models: BaseModel) -> str:

@@ -3,34 +3,39 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 from planners.failure import Failure
 from suite.backends.job import Job, Part
+from suite.trial.lineup import Tasks
 from suite.trial.task import TrialResult, TrialTask, failed_trial
 
 TRIES = 3
 """So often a part of the warm-up, in which its process died, is begun before its planner is to blame."""
+LOOK_AHEAD = 5_000
+"""So many tasks may wait for their planners' warm-up while others go first; each takes some 8 KiB of memory."""
 
 
 class Agenda:
     """Hands out the warm-up's parts, each once, and the tasks whose planner has been warmed up somewhere.
 
     Tasks of a planner that is still being compiled wait, and nobody waits for a planner that hangs there: the others'
-    tasks go first. Those of a planner that failed in its warm-up are never handed out, but are ``results`` at once.
+    tasks go first. Those of a planner that failed in its warm-up, or that can't even be imported, are never handed out,
+    but are ``results`` at once.
     """
 
-    def __init__(self, job: Job, tasks: Sequence[TrialTask]) -> None:
-        """Plan ``tasks``, in this order."""
+    def __init__(self, job: Job, tasks: Tasks) -> None:
+        """Plan ``tasks``, in this order; they are taken one by one, as they are needed."""
         self._job = job
-        self._tasks = deque(tasks)
+        self._coming = iter(tasks)
+        self._back: deque[TrialTask] = deque()
         self._held: dict[str, list[TrialTask]] = {}
         self._not_begun = deque(job.parts)
         self._begun: dict[str, Part] = {}
         self._deaths: dict[str, int] = {}
         self._failures: dict[str | None, Failure] = {}
         self._results: list[tuple[TrialTask, TrialResult]] = []
-        self.n_open = len(self._tasks)
+        self.n_open = len(tasks)
         """Tasks that have no result yet."""
 
     @property
@@ -54,13 +59,16 @@ class Agenda:
     def next_task(self) -> TrialTask | None:
         """The first task whose planner is warm; None if there is none for now."""
         cold = {part.planner for part in (*self._not_begun, *self._begun.values())} - {None}
-        while self._tasks:
-            task = self._tasks.popleft()
+        while task := self._take():
             label = task.spec.label
             if failure := self._failure_of(task):
                 self._fail(task, failure)
+                if len(self._results) >= LOOK_AHEAD:  # to be stored before there are more
+                    return None
             elif label in cold:
                 self._held.setdefault(label, []).append(task)
+                if sum(map(len, self._held.values())) >= LOOK_AHEAD:
+                    return None
             else:
                 return task
         return None
@@ -86,16 +94,14 @@ class Agenda:
 
     def put_back(self, task: TrialTask) -> None:
         """Take back a task that has not been begun."""
-        self._tasks.appendleft(task)
+        self._back.appendleft(task)
 
     def give_up_one(self, failure: Failure) -> None:
         """Let the next task fail for want of a process to run it in."""
-        for queue in (self._tasks, *self._held.values()):
-            if queue:
-                task = queue[0]
-                del queue[0]
-                self._fail(task, failure)
-                return
+        task = self._take()
+        if task is None:
+            task = next(held.pop(0) for held in self._held.values() if held)
+        self._fail(task, failure)
 
     def finish(self, task: TrialTask, result: TrialResult) -> None:
         """Take the result of a task that was handed out."""
@@ -107,8 +113,12 @@ class Agenda:
         results, self._results = self._results, []
         return iter(results)
 
+    def _take(self) -> TrialTask | None:
+        """The first of the tasks that nobody holds."""
+        return self._back.popleft() if self._back else next(self._coming, None)
+
     def _failure_of(self, task: TrialTask) -> Failure | None:
-        return self._failures.get(None) or self._failures.get(task.spec.label)
+        return task.spec.failure or self._failures.get(None) or self._failures.get(task.spec.label)
 
     def _fail(self, task: TrialTask, failure: Failure) -> None:
         self.finish(task, failed_trial(task, failure, 0.0))
@@ -117,4 +127,4 @@ class Agenda:
         """Let the tasks that wait for ``part`` go on, before all others."""
         self._begun.pop(part.name, None)
         held = self._held.pop(part.planner, []) if part.planner else []
-        self._tasks.extendleft(reversed(held))
+        self._back.extendleft(reversed(held))

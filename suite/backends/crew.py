@@ -16,6 +16,7 @@ from suite.backends.job import Job, OnWarmUp, Part
 from suite.backends.local import in_warm_up, run_task, warm_up
 from suite.backends.process import Dead, Late, WorkerProcess
 from suite.backends.worker import Unreadable
+from suite.trial.lineup import Tasks
 from suite.trial.task import TrialResult, TrialTask, failed_trial
 
 STARTS = 3
@@ -41,7 +42,7 @@ class Crew:
         started: Sequence[WorkerProcess],
         workers: int,
         job: Job,
-        tasks: Sequence[TrialTask],
+        tasks: Tasks,
         on_warm_up: OnWarmUp | None,
     ) -> None:
         """Begin with the processes that were ``started``."""
@@ -96,6 +97,8 @@ class Crew:
 
     def _due(self) -> list[_Worker]:
         """Wait until a worker has something to say or is late; return those, none if the warm-up takes its time."""
+        if not any(worker.process.is_asked for worker in self._crew):
+            return []
         patience_s = min(worker.process.patience_s for worker in self._crew)
         if self._agenda.begun:
             patience_s = min(patience_s, TELL_EVERY_S)

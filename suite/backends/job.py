@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
+    from suite.trial.lineup import Tasks
     from suite.trial.task import TrialResult, TrialTask
 
 LEAST_WARM_UP_S = 120.0
@@ -56,9 +57,10 @@ class Backend(Protocol):
     """Where trials run."""
 
     def run(
-        self, job: Job, tasks: Sequence[TrialTask], on_warm_up: OnWarmUp | None = None
+        self, job: Job, tasks: Tasks, on_warm_up: OnWarmUp | None = None
     ) -> Generator[tuple[TrialTask, TrialResult], None, None]:
         """Run every task and yield each with its result as it finishes; closing the iterator early ends all work.
 
-        What a planner does wrong, in a trial or in its warm-up, is in the results of its tasks.
+        Tasks are taken one by one, as work is handed out. What a planner does wrong, in a trial or in its warm-up, is
+        in the results of its tasks.
         """

@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Annotated, Any, Self, TypeVar
+from typing import Annotated, Any, NamedTuple, Self, TypeVar
 
 from pydantic import (
     BaseModel,
@@ -25,7 +25,7 @@ from pydantic import (
 )
 
 from planners import PREDICTORS, PlannerSpec, describe, label_of
-from scenarios import ContinuumArm, Scenario, generate, load_scenarios
+from scenarios import ContinuumArm, PackedScenarios, Scenario, drawn, load_scenarios
 from scenarios.families import parse_family
 from scenarios.spec import known_name
 from suite.errors import SuiteError, one_line
@@ -59,6 +59,30 @@ _NOTATED = ("family", "arm")
 """Conditions in a notation of their own, in which commas part settings."""
 _SENSED = ("predictor", "margin", "limits", "noise_mm", "dropout")
 """Conditions under which one scenario may be met again."""
+
+
+class _Meeting(NamedTuple):
+    """A planner and the conditions under which it meets every scenario."""
+
+    spec: PlannerSpec
+    code: Code
+    predictor: str | None
+    margin: float | None
+    limits: bool
+    noise_mm: float
+    dropout: float
+
+    @property
+    def identity(self) -> tuple[object, ...]:
+        """Equal where trials would be: another margin, say, makes no difference to a bound."""
+        had = self.spec.predictor_for(self.predictor), self.spec.margin_for(self.margin)
+        return self.spec.label, *had, self.limits, self.noise_mm, self.dropout
+
+    def task(self, scenario: Scenario, seed: int) -> TrialTask:
+        had = self.spec.predictor_for(self.predictor)
+        return TrialTask(
+            scenario, self.spec, had, self.limits, seed, self.noise_mm, self.dropout, self.margin, self.code
+        )
 
 
 class Experiment(BaseModel):
@@ -147,7 +171,7 @@ class Experiment(BaseModel):
         with ThreadPoolExecutor(8) as pool:  # each planner from outside is looked at by a process of its own
             return list(pool.map(describe, self.planners))
 
-    def scenarios(self) -> list[Scenario]:
+    def scenarios(self) -> PackedScenarios:
         """Load or generate the scenarios, in a fixed order.
 
         Raises:
@@ -155,16 +179,15 @@ class Experiment(BaseModel):
             SuiteError: Two scenarios are the same, or there are too many trials.
         """
         if self.scenario_files:
-            scenarios = [scenario for file in self.scenario_files for scenario in load_scenarios(file)]
-            _refuse_twins(scenarios)
+            loaded = (scenario for file in self.scenario_files for scenario in load_scenarios(file))
+            scenarios = PackedScenarios(_each_once(loaded))
             self._refuse_too_many(len(scenarios) * len(self.seed))
             return scenarios
-        drawn = list(itertools.product(self.arm, self.family, self.seed, self.obstacles))
-        self._refuse_too_many(len(drawn) * self.trials)  # before they are generated
+        draws = list(itertools.product(self.arm, self.family, self.seed, self.obstacles))
+        self._refuse_too_many(len(draws) * self.trials)  # before they are generated
         arms = {text: ContinuumArm.from_text(text) for text in self.arm}
-        scenarios = [s for arm, family, seed, n in drawn for s in generate(family, n, self.trials, seed, arms[arm])]
-        _refuse_repeats("scenarios", [scenario.id for scenario in scenarios])  # orbit and orbit[max_speed_m_s=0.015]
-        return scenarios
+        generated = (s for arm, family, seed, n in draws for s in drawn(family, n, self.trials, seed, arms[arm]))
+        return PackedScenarios(_each_name_once(generated))
 
     def _refuse_too_many(self, n_scenarios: int) -> None:
         sensed = math.prod(len(getattr(self, field)) for field in _SENSED)
@@ -173,28 +196,41 @@ class Experiment(BaseModel):
             raise SuiteError(f"experiment: found {n_trials} trials in all, allowed {MAX_TRIALS_IN_ALL}")
 
     def tasks(self, scenarios: Iterable[Scenario]) -> Iterator[TrialTask]:
-        """Every planner on every scenario: scenario by scenario, so that an unfinished run compares like with like.
+        """Every planner on every scenario: scenario by scenario, so that an unfinished run compares like with like."""
+        meetings = self._meetings()
+        for scenario in scenarios:
+            for seed in self._seeds(scenario.seed):
+                for meeting in meetings:
+                    yield meeting.task(scenario, seed)
 
-        Conditions that come to the same for a planner, such as another margin for a bound, are one trial.
-        """
+    def count(self, n_scenarios: int) -> int:
+        """How many tasks there are with so many scenarios."""
+        return n_scenarios * len(self._seeds(0)) * len(self._meetings())
+
+    def _seeds(self, drawn: int) -> tuple[int, ...]:
+        """Seeds under which a scenario is met: the one it was drawn with, or all where it comes from a file."""
+        return self.seed if self.scenario_files else (drawn,)
+
+    def _meetings(self) -> list[_Meeting]:
+        """What happens on every scenario; conditions that come to the same for a planner are one."""
         codes = self.codes()
         lineup = [(spec, codes[spec.label]) for spec in self.specs()]
-        sensed = list(itertools.product(*(getattr(self, field) for field in _SENSED)))
-        for scenario in scenarios:
-            seen = set[str]()
-            for seed in self.seed if self.scenario_files else (scenario.seed,):
-                for predictor, margin, limits, noise_mm, dropout in sensed:
-                    for spec, code in lineup:
-                        had = spec.predictor_for(predictor)
-                        task = TrialTask(scenario, spec, had, limits, seed, noise_mm, dropout, margin, code)
-                        if task.key not in seen:
-                            seen.add(task.key)
-                            yield task
+        sensed = itertools.product(*(getattr(self, field) for field in _SENSED))
+        every = [_Meeting(spec, code, *conditions) for conditions in sensed for spec, code in lineup]
+        return list({meeting.identity: meeting for meeting in every[::-1]}.values())[::-1]
 
     def codes(self) -> dict[str, Code]:
         """Which code runs each planner, by label."""
         ours = house_code(house())
         return {spec.label: Code(ours, spec.code or ours) for spec in self.specs()}
+
+    def fingerprint(self) -> str:
+        """16 hexadecimal digits of all that decides which rows are asked for, scenario files and code included."""
+        digest = hashlib.sha256(json.dumps([self.model_dump(mode="json"), self.codes()]).encode())
+        for file in map(Path, self.scenario_files):
+            if file.is_file():  # reading it as scenarios will say what is wrong with another
+                digest.update(file.read_bytes())
+        return digest.hexdigest()[:16]
 
     @property
     def name(self) -> str:
@@ -218,17 +254,35 @@ def make_experiment(**values: Any) -> Experiment:
         raise SuiteError(one_line(error)) from None
 
 
+def _each_name_once(scenarios: Iterable[Scenario]) -> Iterator[Scenario]:
+    """Refuse families that are the same, such as ``orbit`` and ``orbit[max_speed_m_s=0.015]``."""
+    names = set[str]()
+    for scenario in scenarios:
+        if scenario.id in names:
+            raise SuiteError(f"family: found {scenario.id} 2 times, allowed families and arms that differ")
+        names.add(scenario.id)
+        yield scenario
+
+
 def _refuse_repeats(field: str, values: Iterable[object]) -> None:
     value, times = Counter(values).most_common(1)[0]
     if times > 1:
         raise SuiteError(f"{field}: found {value} {times} times, allowed once")
 
 
-def _refuse_twins(scenarios: list[Scenario]) -> None:
-    """A trial is known by its scenario's content, and its seed and row by the scenario's name."""
+def _each_once(scenarios: Iterable[Scenario]) -> Iterator[Scenario]:
+    """Refuse twins: a trial is known by its scenario's content, and its seed and row by the scenario's name.
+
+    Raises:
+        SuiteError: A content or a name is there twice.
+    """
     by_hash: dict[str, str] = {}
+    names = set[str]()
     for scenario in scenarios:
         twin = by_hash.setdefault(scenario.content_hash, scenario.id)
         if twin != scenario.id:
             raise SuiteError(f"scenario files: found {scenario.id}, the same problem as {twin}, allowed once")
-    _refuse_repeats("scenario files", [scenario.id for scenario in scenarios])
+        if scenario.id in names:
+            raise SuiteError(f"scenario files: found {scenario.id} 2 times, allowed once")
+        names.add(scenario.id)
+        yield scenario
