@@ -19,6 +19,7 @@ from suite.cli.check import check
 from suite.cli.check_planner import check_planner
 from suite.cli.compare import compare
 from suite.cli.generate import generate
+from suite.cli.merge import merge
 from suite.cli.new_planner import new_planner
 from suite.cli.options import EXIT_INTERRUPTED, EXIT_USAGE, say
 from suite.cli.planners import planners
@@ -32,7 +33,20 @@ app = typer.Typer(
     rich_markup_mode=None,  # rich help would double the time of --help
     pretty_exceptions_enable=False,
 )
-for verb in (run, table, compare, generate, planners, new_planner, check_planner, predictors, check, audit, version):
+for verb in (
+    run,
+    table,
+    compare,
+    merge,
+    generate,
+    planners,
+    new_planner,
+    check_planner,
+    predictors,
+    check,
+    audit,
+    version,
+):
     app.command()(verb)
 
 
