@@ -24,6 +24,7 @@ from suite.auditor import audit as judge
 from suite.auditor.certificate import certified_contacts
 from suite.auditor.fcl_engine import sampled_contacts
 from suite.compare.gate import Bar, Comparison, compare_runs
+from suite.compare.possible import scenarios_frame
 from suite.compare.tables import summarize
 from suite.errors import SuiteError
 from suite.experiment.experiment import make_experiment, preset_fields
@@ -70,6 +71,10 @@ class Run:
     def table(self) -> pd.DataFrame:
         """The comparison: one row per condition and planner, with 95 % Wilson intervals."""
         return summarize(self.trials, planner_order(self.folder), present_codes(read_manifest(self.folder)))
+
+    def scenarios(self) -> pd.DataFrame:
+        """One row per scenario: possible or not, who solved it, why nobody can; see ``suite.compare.possible``."""
+        return scenarios_frame(self.trials)
 
     def compare(self, new: Run, **bar: Any) -> Comparison:
         """Judge another run against this one, as ``suite compare`` does.
