@@ -23,6 +23,7 @@ from suite.cli.merge import merge
 from suite.cli.new_planner import new_planner
 from suite.cli.options import EXIT_INTERRUPTED, EXIT_USAGE, say
 from suite.cli.planners import planners
+from suite.cli.plot import plot
 from suite.cli.predictors import predictors
 from suite.cli.run import run
 from suite.cli.table import table
@@ -34,19 +35,8 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 for verb in (
-    run,
-    table,
-    compare,
-    merge,
-    generate,
-    planners,
-    new_planner,
-    check_planner,
-    predictors,
-    check,
-    audit,
-    version,
-):
+    run, table, compare, merge, plot, generate, planners, new_planner, check_planner, predictors, check, audit, version,
+):  # fmt: skip
     app.command()(verb)
 
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from suite.errors import SuiteError
 from suite.experiment.code import House
 from suite.store.schema import open_to_read, open_to_write, remember_house, transaction
-from suite.trial.columns import COLUMN_NAMES, COLUMNS, SORTED_BY, Row, complete_row, plain_values
+from suite.trial.columns import COLUMN_NAMES, COLUMNS, CONDITIONS, SORTED_BY, Row, complete_row, plain_values
 from suite.trial.task import Code, TrialResult, TrialTask
 
 _NAMES = ", ".join(f'"{name}"' for name in COLUMN_NAMES)
@@ -36,6 +36,8 @@ class Executed(NamedTuple):
     """Shape (k,)."""
     configurations_rad: NDArray[np.float64]
     """Shape (k, dof)."""
+    conditions: Row
+    """Under which conditions, by the names in ``CONDITIONS``."""
 
 
 class Stored(NamedTuple):
@@ -214,14 +216,16 @@ class Journal:
         Raises:
             SuiteError: What is stored is no trajectory.
         """
+        names = [column.name for column in CONDITIONS]
+        row = f"SELECT scenario_id, planner, executed, {', '.join(names)} FROM trials WHERE number = ?"
         # Sorted by number first: trajectories, sorted as they are, would go through gigabytes of temporary files.
         numbers = self._db.execute(f"SELECT number FROM shown ORDER BY {_SORTED}").fetchall()
         for number in numbers:
-            one = self._db.execute("SELECT scenario_id, planner, executed FROM trials WHERE number = ?", number)
-            scenario_id, planner, blob = one.fetchone()
+            scenario_id, planner, blob, *values = self._db.execute(row, number).fetchone()
             try:
                 timed = np.load(io.BytesIO(blob), allow_pickle=False)
-                yield Executed(scenario_id, planner, timed[:, 0], timed[:, 1:])
+                conditions = dict(zip(names, values, strict=True))
+                yield Executed(scenario_id, planner, timed[:, 0], timed[:, 1:], conditions)
             except (ValueError, TypeError, EOFError, IndexError):
                 raise SuiteError(f"{self._file}: {scenario_id} {planner}: found no trajectory in it") from None
 

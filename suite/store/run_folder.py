@@ -157,6 +157,20 @@ def open_run(
         yield journal, standing
 
 
+def standing_of(folder: Path, manifest: Manifest, tasks: Tasks, *, keep_stale: bool) -> Standing:
+    """How far the run in ``folder`` is with ``tasks``; nothing is written.
+
+    Raises:
+        SuiteError: As ``open_run``, but for what only writing shows.
+    """
+    try:
+        _refuse_strangers(folder)
+        house = {part: manifest[part] for part in ("sources", "versions")}
+        return _standing(folder, _old_house(folder), house, tasks, keep_stale=keep_stale)
+    except (OSError, sqlite3.Error) as error:
+        raise SuiteError(f"{folder}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
+
+
 def _standing(folder: Path, old_house: House | None, house: House, tasks: Tasks, *, keep_stale: bool) -> Standing:
     """How far the run is; rows of another house are for the user to decide about."""
     if not (folder / JOURNAL).exists():

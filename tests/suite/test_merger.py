@@ -9,7 +9,7 @@ from fake_runs import contents, killed_run, run_with_fakes, snapshot
 import suite
 from suite.cli.main import main
 from suite.errors import SuiteError
-from suite.experiment.experiment import preset_fields
+from suite.experiment.file import preset_fields
 
 
 @pytest.fixture(autouse=True)
