@@ -19,6 +19,7 @@ from suite.cli.check import check
 from suite.cli.check_planner import check_planner
 from suite.cli.compare import compare
 from suite.cli.generate import generate
+from suite.cli.merge import merge
 from suite.cli.new_planner import new_planner
 from suite.cli.options import EXIT_INTERRUPTED, EXIT_USAGE, say
 from suite.cli.planners import planners
@@ -34,7 +35,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 for verb in (
-    run, table, compare, plot, generate, planners, new_planner, check_planner, predictors, check, audit, version,
+    run, table, compare, merge, plot, generate, planners, new_planner, check_planner, predictors, check, audit, version,
 ):  # fmt: skip
     app.command()(verb)
 
