@@ -24,6 +24,7 @@ from suite.cli.options import EXIT_INTERRUPTED, EXIT_USAGE, say
 from suite.cli.planners import planners
 from suite.cli.predictors import predictors
 from suite.cli.run import run
+from suite.cli.show import show
 from suite.cli.table import table
 from suite.cli.version import version
 
@@ -32,7 +33,20 @@ app = typer.Typer(
     rich_markup_mode=None,  # rich help would double the time of --help
     pretty_exceptions_enable=False,
 )
-for verb in (run, table, compare, generate, planners, new_planner, check_planner, predictors, check, audit, version):
+for verb in (
+    run,
+    table,
+    show,
+    compare,
+    generate,
+    planners,
+    new_planner,
+    check_planner,
+    predictors,
+    check,
+    audit,
+    version,
+):
     app.command()(verb)
 
 

@@ -116,11 +116,7 @@ class Journal:
         Raises:
             SuiteError: A value is not of its column's type.
         """
-        for values in self._db.execute(f"SELECT {_NAMES} FROM shown"):
-            try:
-                yield complete_row(dict(zip(COLUMN_NAMES, values, strict=True)))
-            except (ValueError, TypeError) as error:
-                raise SuiteError(f"{self._file}: found a row with a value that fits no trial: {error}"[:300]) from None
+        yield from map(self._row, self._db.execute(f"SELECT {_NAMES} FROM shown"))
 
     def columns(self, names: Sequence[str] = COLUMN_NAMES) -> Iterator[dict[str, list[Any]]]:
         """The rows that are asked for, sorted, some thousands at a time: the values of each column in ``names``.
@@ -148,12 +144,31 @@ class Journal:
         numbers = self._db.execute(f"SELECT number FROM shown ORDER BY {_SORTED}").fetchall()
         for number in numbers:
             one = self._db.execute("SELECT scenario_id, planner, executed FROM trials WHERE number = ?", number)
-            scenario_id, planner, blob = one.fetchone()
-            try:
-                timed = np.load(io.BytesIO(blob), allow_pickle=False)
-                yield Executed(scenario_id, planner, timed[:, 0], timed[:, 1:])
-            except (ValueError, TypeError, EOFError, IndexError):
-                raise SuiteError(f"{self._file}: {scenario_id} {planner}: found no trajectory in it") from None
+            yield self._executed(*one.fetchone())
+
+    def trials_of(self, scenario_id: str) -> Iterator[tuple[Row, Executed]]:
+        """Rows of one scenario that are asked for, with what was executed, sorted as in the tables.
+
+        Raises:
+            SuiteError: A value is not of its column's type, or what is stored is no trajectory.
+        """
+        wanted = f"SELECT {_NAMES}, executed FROM shown WHERE scenario_id = ? ORDER BY {_SORTED}"
+        for *values, blob in self._db.execute(wanted, [scenario_id]):
+            row = self._row(values)
+            yield row, self._executed(row["scenario_id"], row["planner"], blob)
+
+    def _row(self, values: Sequence[Any]) -> Row:
+        try:
+            return complete_row(dict(zip(COLUMN_NAMES, values, strict=True)))
+        except (ValueError, TypeError) as error:
+            raise SuiteError(f"{self._file}: found a row with a value that fits no trial: {error}"[:300]) from None
+
+    def _executed(self, scenario_id: str, planner: str, blob: bytes) -> Executed:
+        try:
+            timed = np.load(io.BytesIO(blob), allow_pickle=False)
+            return Executed(scenario_id, planner, timed[:, 0], timed[:, 1:])
+        except (ValueError, TypeError, EOFError, IndexError):
+            raise SuiteError(f"{self._file}: {scenario_id} {planner}: found no trajectory in it") from None
 
 
 def _to_bytes(result: TrialResult) -> bytes:
