@@ -115,6 +115,7 @@ export function label(text, color) {
   pen.fillStyle = color;
   pen.fillText(text, canvas.width / 2, 50);
   const map = new THREE.CanvasTexture(canvas);
+  map.colorSpace = THREE.SRGBColorSpace;
   const sprite = new THREE.Sprite(new THREE.SpriteMaterial({ map, depthTest: false, transparent: true, sizeAttenuation: false }));
   sprite.scale.set((0.036 * canvas.width) / 96, 0.036, 1);
   sprite.renderOrder = 5;

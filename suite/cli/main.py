@@ -19,9 +19,12 @@ from suite.cli.check import check
 from suite.cli.check_planner import check_planner
 from suite.cli.compare import compare
 from suite.cli.generate import generate
+from suite.cli.importing import importing
+from suite.cli.merge import merge
 from suite.cli.new_planner import new_planner
 from suite.cli.options import EXIT_INTERRUPTED, EXIT_USAGE, say
 from suite.cli.planners import planners
+from suite.cli.plot import plot
 from suite.cli.predictors import predictors
 from suite.cli.run import run
 from suite.cli.show import show
@@ -34,20 +37,11 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 for verb in (
-    run,
-    table,
-    show,
-    compare,
-    generate,
-    planners,
-    new_planner,
-    check_planner,
-    predictors,
-    check,
-    audit,
+    run, table, show, compare, merge, plot, generate, planners, new_planner, check_planner, predictors, check, audit,
     version,
-):
+):  # fmt: skip
     app.command()(verb)
+app.add_typer(importing, name="import")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

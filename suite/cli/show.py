@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from suite.cli.options import say, split, usage
+from suite.cli.options import say, usage
 
 
 def show(
@@ -21,6 +21,7 @@ def show(
     out: Annotated[Path | None, typer.Option(help="HTML file to write, in place of opening a browser.")] = None,
 ) -> None:
     """Show a scenario of a run in 3D: what planners did, what they believed, and what came; works offline."""
+    from scenarios.spec import split_specs
     from suite.files import write_text
     from suite.show.replay.pages import open_page, replay_page, scenario_page
 
@@ -31,7 +32,7 @@ def show(
             raise usage(f"--planner: found beside the scenario file {run}, allowed with the folder of a run")
         made = scenario_page(run, scenario)
     else:
-        made = replay_page(run, scenario, () if planner is None else split(planner))
+        made = replay_page(run, scenario, () if planner is None else split_specs(planner))
     for line in made.remarks:
         say(line)
     for line in made.story:

@@ -15,9 +15,10 @@ import numpy as np
 from planners import label_of
 from planners.spec import is_outside, read_spec
 from scenarios import Scenario
+from scenarios.arm import FloatArray
 from suite.show.replay.chosen import Trial, experiment_of
 from suite.store.journal import Executed
-from suite.trial.columns import Row, trial_key
+from suite.trial.columns import CONDITIONS, Row, trial_key
 from suite.trial.episode import run_trial
 from suite.trial.look import Look
 from suite.trial.task import TrialTask
@@ -30,6 +31,7 @@ _SAME_RAD = 1e-9
 class Played(NamedTuple):
     """What there is to see of a trial."""
 
+    label: str
     row: Row
     executed: Executed
     looks: list[Look]
@@ -51,20 +53,21 @@ def play(folder: Path, scenario: Scenario, trial: Trial, trusted: Collection[str
     row, kept = trial.row, trial.executed
     task, hindrance = _task(folder, scenario, row, trusted)
     if task is None:
-        nothing = Executed(scenario.id, str(row["planner"]), np.zeros(1), scenario.start[None])
+        nothing = _executed(row, np.zeros(1), scenario.start[None])
         remark = f"What the planner answered is not shown: {hindrance}."
         has_motion = kept is not None and len(kept.times_s) > 0
-        return Played(row, kept if kept is not None and has_motion else nothing, [], remark)
+        return Played(trial.label, row, kept if kept is not None and has_motion else nothing, [], remark)
     looks: list[Look] = []
     result = run_trial(task, looks.append)
-    again = Executed(scenario.id, task.spec.label, result.times_s, result.configurations_rad)
+    again = _executed(row, result.times_s, result.configurations_rad)
     if kept is None:
         same = all(result.row[name] == row[name] for name in ("outcome", "n_solves", "state_checks"))
-        differs = "" if same else ", but came out otherwise"
-        return Played(row if same else result.row, again, looks, f"Played again: the run keeps rows only{differs}.")
+        remark = f"Played again: the run keeps rows only{'' if same else ', and came out otherwise'}."
+        return Played(trial.label, row if same else result.row, again, looks, remark)
     if not _is_same(kept, again):
-        return Played(row, kept, [], "What the planner answered is not shown: played again, the trial went otherwise.")
-    return Played(row, kept, looks, "")
+        remark = "What the planner answered is not shown: played again, the trial went otherwise."
+        return Played(trial.label, row, kept, [], remark)
+    return Played(trial.label, row, kept, looks, "")
 
 
 def _task(folder: Path, scenario: Scenario, row: Row, trusted: Collection[str]) -> tuple[TrialTask | None, str]:
@@ -80,6 +83,11 @@ def _task(folder: Path, scenario: Scenario, row: Row, trusted: Collection[str]) 
     experiment = experiment_of(folder, texts) if texts else None
     tasks = [] if experiment is None else [t for t in experiment.tasks([scenario]) if t.key == trial_key(row)]
     return (tasks[0], "") if tasks else (None, "the planner or its settings have changed since")
+
+
+def _executed(row: Row, times_s: FloatArray, configurations_rad: FloatArray) -> Executed:
+    conditions = {column.name: row[column.name] for column in CONDITIONS}
+    return Executed(row["scenario_id"], row["planner"], times_s, configurations_rad, conditions)
 
 
 def _is_same(kept: Executed, again: Executed) -> bool:

@@ -13,6 +13,7 @@ from pydantic import ValidationError
 
 from scenarios import Scenario
 from scenarios.spec import known_name
+from suite.compare.conditions import telling_apart
 from suite.errors import SuiteError
 from suite.experiment.experiment import Experiment, make_experiment
 from suite.store.journal import Executed, Journal
@@ -29,6 +30,8 @@ class Trial(NamedTuple):
     row: Row
     executed: Executed | None
     """None where the run kept its rows only."""
+    label: str
+    """The planner, with the conditions that tell its trials apart where it has several."""
 
 
 class Chosen(NamedTuple):
@@ -71,15 +74,17 @@ def choose(folder: Path, scenario_id: str | None, planners: Sequence[str]) -> Ch
         raise SuiteError(
             f"--scenario: found {scenario_id!r}, allowed one of the {len(names)} of {folder}; nearest: {near[0]}"
         )
-    trials = sorted(_kept(folder, rows, scenario_id), key=lambda trial: _position(wanted, trial))
-    trials = [trial for trial in trials if trial.row["planner"] in wanted]
+    apart = telling_apart(rows)
+    kept = [Trial(row, executed, _label(row, apart)) for row, executed in _kept(folder, rows, scenario_id)]
+    kept = [trial for trial in kept if trial.row["planner"] in wanted]
+    trials = sorted(kept, key=lambda trial: wanted.index(trial.row["planner"]))
     if not trials:
         raise SuiteError(
             f"--planner: found no trial of {', '.join(wanted)} on {scenario_id}, allowed one that ran on it"
         )
     shown, rest = trials[:MAX_SHOWN], trials[MAX_SHOWN:]
     scenario = scenario_of(folder, scenario_id, str(shown[0].row["scenario_hash"]))
-    return Chosen(scenario, shown, [str(trial.row["planner"]) for trial in rest], why)
+    return Chosen(scenario, shown, [trial.label for trial in rest], why)
 
 
 def scenario_of(folder: Path, scenario_id: str, content_hash: str) -> Scenario:
@@ -133,18 +138,17 @@ def _first_failure(frame: pd.DataFrame, wanted: list[str]) -> tuple[str, list[st
     return scenario_id, [planner, *others], f"the first trial that failed, {planner} on {scenario_id}{beside}"
 
 
-def _kept(folder: Path, rows: pd.DataFrame, scenario_id: str) -> list[Trial]:
+def _kept(folder: Path, rows: pd.DataFrame, scenario_id: str) -> Sequence[tuple[Row, Executed | None]]:
     if not (folder / JOURNAL).exists():
         plain = rows.astype(object).where(rows.notna(), None)
         named = ({str(name): value for name, value in row.items()} for row in plain.to_dict("records"))
-        return [Trial(complete_row(row), None) for row in named]
+        return [(complete_row(row), None) for row in named]
     try:
         with Journal(folder / JOURNAL, read_only=True) as journal:
-            return [Trial(row, executed) for row, executed in journal.trials_of(scenario_id)]
+            return list(journal.trials_of(scenario_id))
     except (OSError, sqlite3.Error) as error:
         raise SuiteError(f"{folder / JOURNAL}: cannot be read: {error}"[:300]) from None
 
 
-def _position(wanted: list[str], trial: Trial) -> int:
-    label = trial.row["planner"]
-    return wanted.index(label) if label in wanted else len(wanted)
+def _label(row: Row, apart: Sequence[str]) -> str:
+    return ", ".join([str(row["planner"]), *(f"{name.replace('_', ' ')} {row[name]}" for name in apart)])

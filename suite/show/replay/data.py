@@ -47,7 +47,7 @@ def trial_data(scenario: Scenario, played: Played) -> dict[str, Any]:
     """One trial: what was executed, what its planner believed, what it amounts to."""
     row, executed = played.row, played.executed
     return {
-        "planner": row["planner"],
+        "planner": played.label,
         "outcome": row["outcome"],
         "times": packed(executed.times_s),
         "states": packed(executed.configurations_rad),

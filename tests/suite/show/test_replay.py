@@ -72,6 +72,15 @@ def test_played_again_a_planner_believes_what_it_believed(run) -> None:
     assert 0.0005 < np.abs(noise).max() < 0.02  # what it had observed, noise of 3 mm included
 
 
+def test_trials_of_one_planner_are_told_apart_by_their_conditions(tmp_path) -> None:
+    suite.run("pf", out=tmp_path / "a", obstacles=(1,), trials=1, noise_mm=(0.0, 2.0))
+    shown = choose(tmp_path / "a", "orbit-n1-s0-0000", ())
+    assert [trial.label for trial in shown.trials] == ["pf, noise mm 0.0", "pf, noise mm 2.0"]
+    played = [play(tmp_path / "a", shown.scenario, trial) for trial in shown.trials]
+    firsts = [each.looks[0].expected.centers_m[0] for each in played]
+    assert np.abs(firsts[0] - firsts[1]).max() > 1e-4
+
+
 def test_a_trial_that_goes_otherwise_is_shown_without_its_planners_answers(run) -> None:
     chosen = choose(run, None, ())
     (trial,) = chosen.trials
@@ -117,13 +126,13 @@ def test_the_story_tells_a_wrong_prediction_from_a_collision_foreseen(run) -> No
         "contact_section": 3,
         "contact_while": "holding",
     }
-    executed = Executed(scenario.id, "pf", np.array([0.0, 8.0]), np.stack([scenario.start] * 2))
+    executed = Executed(scenario.id, "pf", np.array([0.0, 8.0]), np.stack([scenario.start] * 2), {})
     tip = scenario.arm.tip(scenario.start)
 
     def told(expected_of_it: np.ndarray) -> str:
         centers = np.stack([at + 5.0, expected_of_it, at + 5.0])
         world = make_world(7.0, 1.0, np.stack([centers] * 2), np.full(3, 0.02))
-        return " ".join(story(scenario, Played(row, executed, [Look(7.0, world, None)], "")))
+        return " ".join(story(scenario, Played("pf", row, executed, [Look(7.0, world, None)], "")))
 
     off = told(at + np.array([0.0, 0.003, 0.004]))
     assert off.startswith("At 7.40 s obstacle 2 touched section 3, which was holding still. The planner had looked at")
@@ -158,6 +167,6 @@ def test_trials_without_motion_are_shown_at_the_start(run) -> None:
     chosen = choose(run, None, ())
     row = chosen.trials[0].row | {"outcome": "planner_hung", "message": "no answer for 300 s"}
     dof = len(chosen.scenario.start)
-    played = play(run, chosen.scenario, Trial(row, Executed("a", "pf", np.empty(0), np.empty((0, dof)))))
+    played = play(run, chosen.scenario, Trial(row, Executed("a", "pf", np.empty(0), np.empty((0, dof)), {}), "pf"))
     assert played.executed.configurations_rad.tolist() == [list(chosen.scenario.start_rad)]
     assert story(chosen.scenario, played)[0] == "The planner hung and was stopped: no answer for 300 s."
