@@ -40,7 +40,7 @@ def run_experiment(
     experiment: Experiment,
     folder: Path,
     *,
-    workers: int | Processes,
+    workers: int | Backend,
     hang_limit_s: float = DEFAULT_HANG_LIMIT_S,
     fresh: bool = False,
     keep_stale: bool = False,
@@ -50,8 +50,8 @@ def run_experiment(
     Args:
         experiment: What to run.
         folder: Where the run lives; one that is there goes on, and grows by what is new.
-        workers: Number of worker processes, or those that were started ahead; 0 runs the trials in this process, where
-            nobody can kill a planner that hangs.
+        workers: Number of worker processes, or those that were started ahead, or a cluster; 0 runs the trials in this
+            process, where nobody can kill a planner that hangs.
         hang_limit_s: A trial that takes longer is killed and recorded as ``planner_hung`` [s]. So is a planner's
             warm-up, which has two minutes at the least: it may have to compile.
         fresh: Start over, whatever an earlier run has left in the folder.
@@ -79,8 +79,9 @@ def run_experiment(
         threading.Thread(target=importlib.import_module, args=["suite.show.derived"], daemon=True).start()
         try:
             if standing.left:
-                parts = warm_up_parts(task for task in standing.examples.values() if not task.spec.failure)
-                job = Job(run_trial, hang_limit_s, parts, max(LEAST_WARM_UP_S, hang_limit_s))
+                examples = [task for task in standing.examples.values() if not task.spec.failure]
+                warm_up_limit_s = max(LEAST_WARM_UP_S, hang_limit_s)
+                job = Job(run_trial, hang_limit_s, warm_up_parts(examples), warm_up_limit_s, examples)
                 _run(job, tasks.at(standing.left), journal, workers)
             from suite.show.derived import write_derived
 
@@ -92,7 +93,7 @@ def run_experiment(
             raise RunInterrupted(len(journal.finished()), len(tasks)) from None
 
 
-def _run(job: Job, tasks: Tasks, journal: Journal, workers: int | Processes) -> None:
+def _run(job: Job, tasks: Tasks, journal: Journal, workers: int | Backend) -> None:
     """Run every task and store each result as it comes."""
     backend: Backend = InProcess() if workers == 0 else Processes(workers) if isinstance(workers, int) else workers
     with progress(len(tasks)) as report, closing(backend.run(job, tasks, report.warm_up)) as finished:

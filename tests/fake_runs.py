@@ -9,10 +9,11 @@ from pathlib import Path
 from unittest.mock import patch
 
 import pandas as pd
-from fakes import behave, prepare_nothing
+from fakes import behave, behave_slowly, prepare_nothing
 
 import suite.runner
 from planners import PlannerSpec, describe
+from suite.backends.cluster.head import DaskCluster
 from suite.experiment.experiment import make_experiment
 from suite.store.journal import Journal
 from suite.trial.columns import TIMING_NAMES
@@ -29,6 +30,7 @@ def run_with_fakes(
     fresh: bool = False,
     keep_stale: bool = False,
     in_processes: bool = False,
+    scheduler: str | None = None,
     sources: str = SOURCES,
     codes: Mapping[str, str] | None = None,
     **changes: object,
@@ -56,11 +58,13 @@ def run_with_fakes(
     with (
         patch("suite.experiment.code.source_hash", return_value=sources),
         patch("suite.experiment.experiment.describe", described),
-        patch.object(suite.runner, "run_trial", behave),
+        patch.object(suite.runner, "run_trial", behave_slowly if scheduler else behave),
         patch.object(suite.runner, "warm_up_parts", prepare_nothing),
         patch.object(Journal, "add", add),
     ):
         workers = 2 if in_processes else 0
+        if scheduler is not None:
+            workers = DaskCluster(scheduler, 0, prepare_nothing)
         suite.runner.run_experiment(experiment, folder, workers=workers, fresh=fresh, keep_stale=keep_stale)
     return sorted(ran)
 

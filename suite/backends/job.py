@@ -42,6 +42,8 @@ class Job:
     """The warm-up; what takes longest and what others are built on comes first."""
     warm_up_limit_s: float = LEAST_WARM_UP_S
     """A part that takes longer is killed and its planner's trials become ``planner_hung`` [s]."""
+    examples: Sequence[TrialTask] = ()
+    """A task of every kind that is to run, from which the parts were made; other machines make them anew."""
 
     def needed_by(self, task: TrialTask) -> list[Part]:
         """What a process has to have warmed up before ``task``."""

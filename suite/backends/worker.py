@@ -10,6 +10,9 @@ from multiprocessing.connection import Connection
 from typing import Any, NamedTuple
 
 
+LENGTH_BYTES = 8
+
+
 class Request(NamedTuple):
     """What a worker is asked to do."""
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -23,6 +24,9 @@ from suite.cli.options import (
     whole_numbers,
     within,
 )
+
+if TYPE_CHECKING:
+    from suite.backends.job import Backend
 
 
 def run(
@@ -53,7 +57,14 @@ def run(
     scenarios: Annotated[
         list[Path] | None, typer.Option(help="Scenario file to use instead of a family; may be repeated.")
     ] = None,
-    workers: Annotated[int | None, typer.Option(help="Processes. [default: all cores]")] = None,
+    backend: Annotated[
+        Literal["local", "dask"], typer.Option(help="Where trials run: on this machine, or on a Dask cluster.")
+    ] = "local",
+    scheduler: Annotated[
+        str | None,
+        typer.Option(help="Address of the cluster's scheduler. [default: a cluster on this machine is started]"),
+    ] = None,
+    workers: Annotated[int | None, typer.Option(help="Processes on this machine. [default: all cores]")] = None,
     hang_limit_s: Annotated[
         float, typer.Option(help="A trial that takes longer is killed; a warm-up has 120 s at least.")
     ] = 300.0,
@@ -68,7 +79,13 @@ def run(
     within("--hang-limit-s", hang_limit_s, 1, 1e6)
     if fresh and keep_stale:
         raise usage("--keep-stale: found beside --fresh, allowed one of them")
-    with Processes(n_workers) as processes:  # the first is on its way while this process imports what follows
+    if scheduler is not None and backend != "dask":
+        raise usage("--scheduler: found beside --backend local, allowed with --backend dask")
+    if scheduler is not None and workers is not None:
+        raise usage("--workers: found beside --scheduler, allowed without: the cluster's own are used")
+    with ExitStack() as stack:
+        # The first local process is on its way while this one imports what follows.
+        where = stack.enter_context(Processes(n_workers)) if backend == "local" else _cluster(scheduler, n_workers)
         from suite.runner import RunInterrupted, run_experiment
 
         fields = {
@@ -89,7 +106,7 @@ def run(
         folder = out or Path("results") / experiment.name
         try:
             summary = run_experiment(
-                experiment, folder, workers=processes, hang_limit_s=hang_limit_s, fresh=fresh, keep_stale=keep_stale
+                experiment, folder, workers=where, hang_limit_s=hang_limit_s, fresh=fresh, keep_stale=keep_stale
             )
         except RunInterrupted as stop:
             say(f"stopped: {stop} in {folder}; the same command goes on from there")
@@ -100,3 +117,10 @@ def run(
     print()
     for name in ("table.md", "table.csv", "trials.csv"):
         print(folder / name)
+
+
+def _cluster(scheduler: str | None, n_workers: int) -> Backend:
+    from suite.backends.cluster.head import DaskCluster
+    from suite.backends.warm_up import warm_up_parts
+
+    return DaskCluster(scheduler, n_workers, warm_up_parts)

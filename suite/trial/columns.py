@@ -176,3 +176,7 @@ _PLAIN_TYPES: dict[DType, Callable[[Any], str | bool | int | float]] = {
     "Int64": int,
     "float64": float,
 }
+
+
+def checked_measurements(values):
+    return {column.name: _plain(column.dtype, values.get(column.name)) for column in MEASURED}
