@@ -16,6 +16,7 @@ def main() -> None:
     from benchmarks.boundary import boundary
     from benchmarks.continuous import solve_times
     from benchmarks.first_minute import first_minute
+    from benchmarks.gate import gate
     from benchmarks.planning import against_literal, growth
     from benchmarks.proofs import possible, soundness
     from benchmarks.scale import scale
@@ -37,6 +38,7 @@ def main() -> None:
         "scale": ("A hundred thousand trials", scale),
         "possible": ("What is proven impossible, seed 0", possible),
         "soundness": ("Proofs against planners", soundness),
+        "gate": ("False alarms and power of suite compare", gate),
         "strrt": ("ST-RRT* against that of OMPL 1.7.0, future known", against_ompl),
     }
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)

@@ -78,7 +78,7 @@ def load_scenarios(path: str | os.PathLike[str]) -> list[Scenario]:
             message names file, field, what was found and what is allowed.
     """
     file = Path(path)
-    entries = _read(file)
+    entries = read_entries(file)
     if not 1 <= len(entries) <= MAX_SCENARIOS:
         raise ScenarioError(f"{file}: found {len(entries)} scenarios, allowed 1 to {MAX_SCENARIOS}")
     count = len(entries)
@@ -116,8 +116,12 @@ def _suffix(file: Path) -> str:
     return file.suffix.lower()
 
 
-def _read(file: Path) -> list[Any]:
-    """The file's entries as plain Python values."""
+def read_entries(file: Path) -> list[Any]:
+    """What a file holds as plain Python values, in a list: of one, or of those that the file lists.
+
+    Raises:
+        ScenarioError: The file cannot be read, is too large, or is not valid YAML or JSON.
+    """
     suffix, text = _suffix(file), _text(file)
     try:
         if suffix == ".jsonl":

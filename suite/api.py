@@ -7,6 +7,7 @@ unless ``processes`` asks for workers.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal, TypedDict, Unpack
 
@@ -22,13 +23,25 @@ from suite.auditor import Audit
 from suite.auditor import audit as judge
 from suite.auditor.certificate import certified_contacts
 from suite.auditor.fcl_engine import sampled_contacts
+from suite.compare.conditions import telling_apart
+from suite.compare.gate import Bar, Comparison, compare_runs
+from suite.compare.possible import scenarios_frame
 from suite.compare.tables import summarize
 from suite.errors import SuiteError
-from suite.experiment.experiment import make_experiment, preset_fields
+from suite.experiment.experiment import make_experiment
+from suite.experiment.file import preset_fields
+from suite.merger import merge_runs
 from suite.runner import DEFAULT_HANG_LIMIT_S, run_experiment
 from suite.show.text import cells
 from suite.store.journal import Executed, Journal
-from suite.store.run_folder import JOURNAL, planner_order, present_codes, read_manifest, read_trials
+from suite.store.run_folder import (
+    JOURNAL,
+    house_changes,
+    planner_order,
+    present_codes,
+    read_manifest,
+    read_trials,
+)
 from suite.trial import episode
 from suite.trial.observation import Observer
 from suite.trial.task import TrialResult, TrialTask
@@ -61,21 +74,49 @@ class Run:
         """The comparison: one row per condition and planner, with 95 % Wilson intervals."""
         return summarize(self.trials, planner_order(self.folder), present_codes(read_manifest(self.folder)))
 
-    def trajectory(self, scenario: str, planner: str) -> Executed:
+    def scenarios(self) -> pd.DataFrame:
+        """One row per scenario: possible or not, who solved it, why nobody can; see ``suite.compare.possible``."""
+        return scenarios_frame(self.trials)
+
+    def compare(self, new: Run, **bar: Any) -> Comparison:
+        """Judge another run against this one, as ``suite compare`` does.
+
+        Args:
+            new: What is held against this run.
+            **bar: Fields of ``suite.compare.gate.Bar``: ``margin``, ``alpha``, ``cost_margin``, ``verdict``,
+                ``across``.
+
+        Raises:
+            SuiteError: A number is out of range, or a condition unknown.
+        """
+        found = compare_runs(self.trials, new.trials, Bar(**bar))
+        return replace(found, differing=(*found.differing, *house_changes(self.folder, new.folder)))
+
+    def trajectory(self, scenario: str, planner: str, **conditions: Any) -> Executed:
         """What a planner executed in a scenario: times (k,) [s] and configurations (k, dof) [rad].
 
         Args:
             scenario: Its id.
             planner: Its label, as in the table.
+            **conditions: Columns of the trial and their values, such as ``noise_mm=2.0``, where it ran under several.
 
         Raises:
-            SuiteError: There is no such trial.
+            SuiteError: There is no such trial, or more than one.
         """
         with Journal(self.folder / JOURNAL, read_only=True) as journal:
-            for executed in journal.executed():
-                if (executed.scenario_id, executed.planner) == (scenario, planner):
-                    return executed
-        raise SuiteError(f"{self.folder}: found no trial of {planner!r} on {scenario!r}")
+            found = [
+                executed
+                for executed in journal.executed()
+                if (executed.scenario_id, executed.planner) == (scenario, planner)
+                and all(executed.conditions.get(name) == value for name, value in conditions.items())
+            ]
+        if len(found) == 1:
+            return found[0]
+        what = f"{planner!r} on {scenario!r}" + "".join(f", {name}={value!r}" for name, value in conditions.items())
+        if not found:
+            raise SuiteError(f"{self.folder}: found no trial of {what}")
+        names = ", ".join(telling_apart(self.trials))
+        raise SuiteError(f"{self.folder}: found {len(found)} trials of {what}, allowed one: say which by {names}")
 
     def scenario(self, scenario: str) -> Scenario:
         """A scenario of the run by its id.
@@ -115,14 +156,16 @@ def run(
     Args:
         planners: Specs (``"temporal,rrt"``) and classes; may be empty where a preset names some.
         out: Folder of the run; ``results/NAME`` when None.
-        preset: Name of a preset, or the ``manifest.json`` of a run, whose fields are taken unless given here.
+        preset: Name of a preset, an experiment file, or the ``manifest.json`` of a run, whose fields are taken unless
+            given here.
         processes: Worker processes; 0 runs every trial in this process, where a planner that hangs or crashes
             can't be stopped.
         hang_limit_s: In worker processes a trial that takes longer is killed [s].
         fresh: Start over what the folder holds.
         keep_stale: Use rows that other code has made as they are.
         **conditions: Fields of ``suite.experiment.experiment.Experiment``: ``family``, ``arm``, ``obstacles``,
-            ``trials``, ``seed``, ``predictor``, ``margin``, ``limits``, ``noise_mm``, ``dropout``, ``scenario_files``.
+            ``trials``, ``seed``, ``predictor``, ``margin``, ``limits``, ``noise_mm``, ``dropout``, ``scenario_files``;
+            all but ``trials`` and the files may have several values, of which every combination is run.
 
     Raises:
         SuiteError, SpecError, ScenarioError: Something asked for is not allowed; one line.
@@ -143,6 +186,21 @@ def load(folder: str | Path) -> Run:
         SuiteError: There is none, or it cannot be read.
     """
     return Run(folder)
+
+
+def merge(runs: Iterable[str | Path], out: str | Path, *, keep_first: bool = False) -> Run:
+    """Put several runs together in a folder of their own, as ``suite merge`` does; they themselves are only read.
+
+    Args:
+        runs: Their folders.
+        out: A new or an empty folder.
+        keep_first: Where two have different rows for one trial by the same code, let that of the first stand.
+
+    Raises:
+        SuiteError: A run cannot be read, two are in conflict, or ``out`` holds something. Then nothing is written.
+    """
+    merge_runs([Path(run) for run in runs], Path(out), keep_first=keep_first)
+    return Run(out)
 
 
 class Conditions(TypedDict, total=False):

@@ -44,6 +44,7 @@ def run_experiment(
     hang_limit_s: float = DEFAULT_HANG_LIMIT_S,
     fresh: bool = False,
     keep_stale: bool = False,
+    quiet: bool = False,
 ) -> pd.DataFrame:
     """Run what is left of an experiment and write its files.
 
@@ -56,6 +57,7 @@ def run_experiment(
             warm-up, which has two minutes at the least: it may have to compile.
         fresh: Start over, whatever an earlier run has left in the folder.
         keep_stale: Use rows that other code has made as they are.
+        quiet: Say nothing on the way.
 
     Returns:
         The summary, one row per number of obstacles, conditions and planner.
@@ -70,10 +72,10 @@ def run_experiment(
     scenarios = experiment.scenarios()
     for arm in scenarios.arms:
         check_fit(experiment.specs(), arm)
-    tasks = Lineup(partial(experiment.tasks, scenarios), range(len(scenarios) * len(experiment.planners)))
+    tasks = Lineup(partial(experiment.tasks, scenarios), range(experiment.count(len(scenarios))))
     manifest = make_manifest(experiment, scenarios)
     with open_run(folder, manifest, tasks, fresh=fresh, keep_stale=keep_stale) as (journal, standing):
-        for line in standing.notes():
+        for line in [] if quiet else standing.notes():
             note(line)
         # Pandas takes as long to import as workers to load their kernels.
         threading.Thread(target=importlib.import_module, args=["suite.show.derived"], daemon=True).start()
@@ -82,7 +84,7 @@ def run_experiment(
                 examples = [task for task in standing.examples.values() if not task.spec.failure]
                 warm_up_limit_s = max(LEAST_WARM_UP_S, hang_limit_s)
                 job = Job(run_trial, hang_limit_s, warm_up_parts(examples), warm_up_limit_s, examples)
-                _run(job, tasks.at(standing.left), journal, workers)
+                _run(job, tasks.at(standing.left), journal, workers, quiet=quiet)
             from suite.show.derived import write_derived
 
             summary = write_derived(folder, journal, scenarios, experiment.codes())
@@ -93,10 +95,10 @@ def run_experiment(
             raise RunInterrupted(len(journal.finished()), len(tasks)) from None
 
 
-def _run(job: Job, tasks: Tasks, journal: Journal, workers: int | Backend) -> None:
+def _run(job: Job, tasks: Tasks, journal: Journal, workers: int | Backend, *, quiet: bool) -> None:
     """Run every task and store each result as it comes."""
     backend: Backend = InProcess() if workers == 0 else Processes(workers) if isinstance(workers, int) else workers
-    with progress(len(tasks)) as report, closing(backend.run(job, tasks, report.warm_up)) as finished:
+    with progress(len(tasks), quiet=quiet) as report, closing(backend.run(job, tasks, report.warm_up)) as finished:
         for task, result in finished:
             journal.add(task, result)
             report(task.spec.label)

@@ -14,22 +14,27 @@ from suite.cli.options import (
     Arm,
     Family,
     Obstacles,
-    Seed,
+    Quiet,
+    Seeds,
     Trials,
     cores,
     experiment_of,
+    names,
+    numbers,
     say,
-    split,
     usage,
-    whole_numbers,
     within,
 )
 
 if TYPE_CHECKING:
     from suite.backends.job import Backend
+    from suite.experiment.experiment import Experiment
 
 
 def run(
+    file: Annotated[
+        Path | None, typer.Argument(help="Experiment file (.yaml, .json), or the manifest.json of a run.")
+    ] = None,
     planners: Annotated[
         str | None, typer.Option(help="Planners, such as 'temporal[horizon=3],rrt,pf'; see 'suite planners'.")
     ] = None,
@@ -40,20 +45,24 @@ def run(
     arm: Arm = None,
     obstacles: Obstacles = None,
     trials: Trials = None,
-    seed: Seed = None,
+    seed: Seeds = None,
     predictor: Annotated[
-        str | None, typer.Option(help="Predictor of obstacle motion. [default: each planner's own]")
+        str | None, typer.Option(help="Predictors of obstacle motion. [default: own, each planner's own]")
     ] = None,
     margin: Annotated[
-        float | None,
+        str | None,
         typer.Option(help="Standard deviations by which predicted obstacles are grown. [default: each planner's own]"),
     ] = None,
     limits: Annotated[
         bool | None,
         typer.Option("--limits/--no-limits", help="Hold planners to the arm's motion limits. [default: no]"),
     ] = None,
-    noise_mm: Annotated[float | None, typer.Option(help="Noise on observed positions. [default: 0]")] = None,
-    dropout: Annotated[float | None, typer.Option(help="Share of observations lost. [default: 0]")] = None,
+    noise_mm: Annotated[
+        str | None, typer.Option(help="Noise on observed positions, such as 0,1,2,5. [default: 0]")
+    ] = None,
+    dropout: Annotated[
+        str | None, typer.Option(help="Share of observations lost, such as 0..0.4/5. [default: 0]")
+    ] = None,
     scenarios: Annotated[
         list[Path] | None, typer.Option(help="Scenario file to use instead of a family; may be repeated.")
     ] = None,
@@ -73,8 +82,16 @@ def run(
     keep_stale: Annotated[
         bool, typer.Option("--keep-stale", help="Use rows there that other code has made, as they are.")
     ] = False,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Say how many trials there are and how long they should take; run none.")
+    ] = False,
+    quiet: Quiet = False,
+    format: Annotated[Literal["terminal", "json"], typer.Option(help="How the table is printed.")] = "terminal",
 ) -> None:
-    """Run every planner on the same scenarios and compare them; what a run in the folder has already is kept."""
+    """Run every planner on the same scenarios and compare them; what a run in the folder has already is kept.
+
+    Wherever several values are given, every combination is run, each under a row of its own.
+    """
     n_workers = within("--workers", cores() if workers is None else workers, 1, 1024)
     within("--hang-limit-s", hang_limit_s, 1, 1e6)
     if fresh and keep_stale:
@@ -83,34 +100,49 @@ def run(
         raise usage("--scheduler: found beside --backend local, allowed with --backend dask")
     if scheduler is not None and workers is not None:
         raise usage("--workers: found beside --scheduler, allowed without: the cluster's own are used")
+    fields = {
+        "planners": planners,
+        "family": family,
+        "arm": arm,
+        "obstacles": obstacles and numbers("--obstacles", obstacles, int),
+        "trials": trials,
+        "seed": seed and numbers("--seed", seed, int),
+        "predictor": predictor and names(predictor),
+        "margin": margin and numbers("--margin", margin, float),
+        "limits": limits,
+        "noise_mm": noise_mm and numbers("--noise-mm", noise_mm, float),
+        "dropout": dropout and numbers("--dropout", dropout, float),
+        "scenario_files": scenarios and tuple(map(str, scenarios)),
+    }
+    given = {name: value for name, value in fields.items() if value is not None}
+    if dry_run:
+        _foretell(experiment_of(preset, file, given), file, out, n_workers, fresh=fresh, keep_stale=keep_stale)
+        return
     with ExitStack() as stack:
         # The first local process is on its way while this one imports what follows.
         where = stack.enter_context(Processes(n_workers)) if backend == "local" else _cluster(scheduler, n_workers)
         from suite.runner import RunInterrupted, run_experiment
 
-        fields = {
-            "planners": planners and split(planners),
-            "family": family,
-            "arm": arm,
-            "obstacles": obstacles and whole_numbers(obstacles),
-            "trials": trials,
-            "seed": seed,
-            "predictor": predictor,
-            "margin": margin,
-            "limits": limits,
-            "noise_mm": noise_mm,
-            "dropout": dropout,
-            "scenario_files": scenarios and tuple(str(file) for file in scenarios),
-        }
-        experiment = experiment_of(preset, {name: value for name, value in fields.items() if value is not None})
-        folder = out or Path("results") / experiment.name
+        experiment = experiment_of(preset, file, given)
+        folder = out or _folder(experiment, file)
         try:
             summary = run_experiment(
-                experiment, folder, workers=where, hang_limit_s=hang_limit_s, fresh=fresh, keep_stale=keep_stale
+                experiment,
+                folder,
+                workers=where,
+                hang_limit_s=hang_limit_s,
+                fresh=fresh,
+                keep_stale=keep_stale,
+                quiet=quiet,
             )
         except RunInterrupted as stop:
             say(f"stopped: {stop} in {folder}; the same command goes on from there")
             raise typer.Exit(EXIT_INTERRUPTED) from None
+    if format == "json":
+        from suite.show.text import as_json
+
+        print(as_json(summary))
+        return
     from suite.show.terminal import print_summary
 
     print_summary(summary)
@@ -124,3 +156,19 @@ def _cluster(scheduler: str | None, n_workers: int) -> Backend:
     from suite.backends.warm_up import warm_up_parts
 
     return DaskCluster(scheduler, n_workers, warm_up_parts)
+
+
+def _folder(experiment: Experiment, file: Path | None) -> Path:
+    """Named after the experiment's file, which may be edited; else after the conditions."""
+    return Path("results") / (experiment.name if file is None or file.name == "manifest.json" else file.stem)
+
+
+def _foretell(
+    experiment: Experiment, file: Path | None, out: Path | None, workers: int, *, fresh: bool, keep_stale: bool
+) -> None:
+    from suite.foresight import foresee
+
+    folder = out or _folder(experiment, file)
+    print(f"would run in {folder}")
+    for line in foresee(experiment, folder, workers, fresh=fresh, keep_stale=keep_stale).lines(workers):
+        print(line)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from typing import Any, Literal, NamedTuple
 
@@ -9,6 +10,7 @@ import pandas as pd
 from tabulate import tabulate
 
 from suite.auditor.verdicts import VERDICTS
+from suite.compare.conditions import Pooled
 from suite.show.conditions import column, sentence, varying
 from suite.store.frames import FLOAT_FORMAT
 from suite.trial.columns import WORLD
@@ -20,11 +22,12 @@ Format = Literal["markdown", "csv", "latex"]
 NOTES = """\
 Success in percent of all trials with its 95 % Wilson interval; each verdict is stricter than the one before: per step
 (no collision at whole seconds), swept (at no instant: the paper's protocol, beside which published numbers stand),
-executable (swept, within bending rate and tip speed). A bound knows the true motion and is not compared; "of bound"
-gives successes in percent of its, one verdict after another. Planning time is the sum over a trial's solves: mean /
-median over all trials. Solve is the median of the trials' median solves. Arrival, tip path and smoothness S are medians
-over the trials that reached the goal. Errors are trials in which the planner failed as a program: it raised, crashed or
-hung. Stale trials were run by other code than the present."""
+executable (swept, within bending rate and tip speed). A bound knows the true motion and is not compared. "Of
+possible": executable successes, of as many scenarios as somebody solved so, to as many as are not proven impossible;
+"of bound", in older tables, successes in percent of a bound's, one verdict after another. Planning time is the sum
+over a trial's solves: mean / median over all trials. Solve is the median of the trials' median solves. Arrival, tip
+path and smoothness S are medians over the trials that reached the goal. Errors are trials in which the planner failed
+as a program: it raised, crashed or hung. Stale trials were run by other code than the present."""
 
 
 class Shown(NamedTuple):
@@ -43,10 +46,13 @@ def as_csv(frame: pd.DataFrame) -> str:
 def shown_columns(summary: pd.DataFrame) -> list[Shown]:
     """The columns that people see of a summary; those that say nothing are left out."""
     published = "published_success_percent" in summary
+    has_bound, is_known = summary["is_bound"].any(), summary["scenarios_possible"].notna().any()
     varied = varying(summary)
     columns = [
-        Shown("family", lambda row: str(row.family)) if len(set(summary["family"])) > 1 else None,
-        Shown("obstacles", lambda row: str(row.n_obstacles)),
+        Shown("family", lambda row: "all" if pd.isna(row.family) else str(row.family))
+        if len(set(summary["family"])) > 1
+        else None,
+        Shown("obstacles", lambda row: "all" if pd.isna(row.n_obstacles) else str(row.n_obstacles)),
         *(Shown(*column(summary, name)) for name in varied if name in WORLD_NAMES),
         Shown("planner", lambda row: f"{row.planner} (bound)" if row.is_bound else str(row.planner)),
         *(Shown(*column(summary, name)) for name in varied if name not in WORLD_NAMES),
@@ -58,7 +64,8 @@ def shown_columns(summary: pd.DataFrame) -> list[Shown]:
         Shown("published %", lambda row: _number(row.published_success_percent)) if published else None,
         Shown("swept %", _success("swept")),
         Shown("executable %", _success("executable")),
-        Shown("of bound %", _shares) if summary["is_bound"].any() else None,
+        Shown("of possible", _of_possible) if has_bound and is_known else None,
+        Shown("of bound %", _shares) if has_bound and not is_known else None,
         Shown("planning s", _planning),
         Shown("published s", lambda row: _number(row.published_time_s)) if published else None,
         Shown("solve ms", lambda row: _number(1e3 * row.solve_median_s)),
@@ -102,6 +109,22 @@ def render_pairs(pairs: pd.DataFrame, format: Format) -> str:
     return _tabulated(titles, rows, format)
 
 
+def as_json(summary: pd.DataFrame, pairs: pd.DataFrame | None = None, pooled: Pooled | None = None) -> str:
+    """Every column, unrounded: ``table``, with ``pairs`` and what was ``pooled`` where that was asked for."""
+    parts: dict[str, Any] = {"table": _records(summary)}
+    if pairs is not None:
+        parts["pairs"] = _records(pairs)
+    if pooled is not None:
+        parts["pooled"] = pooled.over
+    return json.dumps(parts, allow_nan=False, default=str)
+
+
+def _records(frame: pd.DataFrame) -> list[dict[str, Any]]:
+    """Rows as plain values; null for what there is not."""
+    objects = frame.astype(object).where(frame.notna(), None)
+    return [{str(key): value for key, value in row.items()} for row in objects.to_dict("records")]
+
+
 def as_markdown_page(title: str, summary: pd.DataFrame) -> str:
     """The text of ``table.md``."""
     return "\n\n".join([f"# {title}", *filter(None, [sentence(summary)]), f"{render(summary, 'markdown')}\n{NOTES}\n"])
@@ -123,6 +146,14 @@ def _success(verdict: str) -> Callable[[Any], str]:
 def _shares(row: Any) -> str:
     shares = [getattr(row, f"success_{verdict}_of_bound_percent") for verdict in VERDICTS]
     return "-" if pd.isna(shares).all() else " / ".join("-" if pd.isna(share) else f"{share:.0f}" for share in shares)
+
+
+def _of_possible(row: Any) -> str:
+    if pd.isna(row.success_executable_percent) or pd.isna(row.scenarios_possible):
+        return "-"
+    successes = round(row.success_executable_percent * row.trials / 100)
+    to = f" to {row.scenarios_possible + row.scenarios_open}" if row.scenarios_open else ""
+    return f"{successes} of {row.scenarios_possible}{to}"
 
 
 def _planning(row: Any) -> str:

@@ -13,19 +13,22 @@ from planners import is_bound
 from suite.auditor.verdicts import VERDICTS
 from suite.errors import SuiteError
 from suite.store.schema import old_margin
-from suite.trial.columns import COLUMN_NAMES, COLUMNS, CONDITIONS, SORTED_BY, Column, Row
+from suite.trial.columns import COLUMN_NAMES, COLUMNS, CONDITIONS, SORTED_BY, Row
 
-_NEW_IN_TABLES = {column.name: column.dtype for column in CONDITIONS} | {"stale": "int64"}
+_POSSIBLE = {f"scenarios_{answer}": "Int64" for answer in ("possible", "open", "impossible")}
+_NEW_IN_TABLES = {column.name: column.dtype for column in CONDITIONS} | {"stale": "int64"} | _POSSIBLE
 
 TABLE_TYPES: dict[str, str] = {
     "family": "string",
-    "n_obstacles": "int64",
+    "n_obstacles": "Int64",
     "planner": "string",
-    **_NEW_IN_TABLES,
+    **{column.name: column.dtype for column in CONDITIONS},
+    "stale": "int64",
     "is_bound": "bool",
     "trials": "int64",
     **{f"success_{verdict}_{part}": "float64" for verdict in VERDICTS for part in ("percent", "low", "high")},
     **{f"success_{verdict}_of_bound_percent": "float64" for verdict in VERDICTS},
+    **_POSSIBLE,
     "planning_time_mean_s": "float64",
     "planning_time_median_s": "float64",
     "solve_median_s": "float64",
@@ -84,12 +87,12 @@ def read_trials_csv(file: Path) -> pd.DataFrame:
         SuiteError: The file cannot be read, or a column is missing or holds something else than it should.
     """
     frame = _read_csv(file, {column.name: column.dtype for column in COLUMNS})
-    is_old = not any(column.since > 1 and column.name in frame for column in COLUMNS)
-    missing = [column.name for column in COLUMNS if column.name not in frame and not (is_old and column.since > 1)]
+    version = max((column.since for column in COLUMNS if column.name in frame), default=1)
+    missing = [column.name for column in COLUMNS if column.name not in frame and column.since <= version]
     if missing:
         raise SuiteError(f"{file}: found no column {missing[0]}, a table of trials has one")
-    if is_old:
-        frame = _with_unknown(frame, [column for column in COLUMNS if column.since > 1])
+    frame = _with_unknown(frame, {column.name: column.dtype for column in COLUMNS if column.since > version})
+    if version == 1:
         planner = frame["planner"].fillna("")
         frame = frame.assign(
             prediction_margin=planner.map(old_margin).astype("float64"),
@@ -108,13 +111,16 @@ def read_table_csv(file: Path) -> pd.DataFrame:
     missing = [name for name in TABLE_TYPES if name not in frame and name not in _NEW_IN_TABLES]
     if missing:
         raise SuiteError(f"{file}: found no column {missing[0]}, a table has one")
-    return _with_unknown(frame if "stale" in frame else frame.assign(stale=0), CONDITIONS)
+    types = {column.name: column.dtype for column in CONDITIONS} | _POSSIBLE
+    frame = _with_unknown(frame if "stale" in frame else frame.assign(stale=0), types)
+    return frame[[*TABLE_TYPES, *(name for name in frame if name not in TABLE_TYPES)]]
 
 
-def _with_unknown(frame: pd.DataFrame, columns: Iterable[Column]) -> pd.DataFrame:
-    """Add, empty, those of the columns that are not there."""
+def _with_unknown(frame: pd.DataFrame, types: Mapping[str, str]) -> pd.DataFrame:
+    """Add, empty, those of the columns, given with their types, that are not there."""
     empty = [None] * len(frame)
-    return frame.assign(**{c.name: pd.Series(empty, frame.index, c.dtype) for c in columns if c.name not in frame})
+    lacking = {name: dtype for name, dtype in types.items() if name not in frame}
+    return frame.assign(**{name: pd.Series(empty, frame.index, dtype) for name, dtype in lacking.items()})
 
 
 def _read_csv(file: Path, types: Mapping[str, str]) -> pd.DataFrame:

@@ -66,6 +66,14 @@ def present_codes(manifest: Manifest | None) -> dict[str, Code]:
     return {label: Code(str(code.get("house")), str(planner)) for label, planner in code["planners"].items()}
 
 
+def house_changes(base: Path, new: Path) -> list[str]:
+    """What has changed in the suite and its libraries from one run to another, as far as their manifests say."""
+    houses = [read_manifest(folder) or {} for folder in (base, new)]
+    if not all(isinstance(house.get("versions"), dict) and "sources" in house for house in houses):
+        return []
+    return [f"the suite: {change}" for change in changes(*houses)]
+
+
 def read_trials(folder: Path, names: Sequence[str] = COLUMN_NAMES) -> pd.DataFrame | None:
     """The trials so far: from the journal, or from ``trials.csv`` where only that was kept; None without either.
 
@@ -78,7 +86,7 @@ def read_trials(folder: Path, names: Sequence[str] = COLUMN_NAMES) -> pd.DataFra
     """
     if (folder / JOURNAL).exists():
         try:
-            with Journal(folder / JOURNAL, read_only=True, old_house=_old_house(folder)) as journal:
+            with open_journal(folder) as journal:
                 return refuse_gaps(joined(map(columns_frame, journal.columns(names)), names), folder / JOURNAL)
         except (OSError, sqlite3.Error) as error:
             raise SuiteError(f"{folder / JOURNAL}: cannot be read: {error}"[:300]) from None
@@ -94,6 +102,18 @@ def read_table(folder: Path) -> pd.DataFrame:
     if not (folder / TABLE).exists():
         raise SuiteError(f"{folder}: found no {JOURNAL}, {TRIALS} or {TABLE}, allowed: the folder of a run")
     return read_table_csv(folder / TABLE)
+
+
+def open_journal(folder: Path) -> Journal:
+    """The journal of a run of any version, to read.
+
+    Raises:
+        SuiteError: There is none.
+        sqlite3.Error: It cannot be read.
+    """
+    if not (folder / JOURNAL).exists():
+        raise SuiteError(f"{folder}: found no {JOURNAL}, allowed: the folder of a run with its journal")
+    return Journal(folder / JOURNAL, read_only=True, old_house=_old_house(folder))
 
 
 @contextmanager
@@ -135,6 +155,20 @@ def open_run(
                 f"{folder}: cannot be read or written: {getattr(error, 'strerror', None) or error}"
             ) from None
         yield journal, standing
+
+
+def standing_of(folder: Path, manifest: Manifest, tasks: Tasks, *, keep_stale: bool) -> Standing:
+    """How far the run in ``folder`` is with ``tasks``; nothing is written.
+
+    Raises:
+        SuiteError: As ``open_run``, but for what only writing shows.
+    """
+    try:
+        _refuse_strangers(folder)
+        house = {part: manifest[part] for part in ("sources", "versions")}
+        return _standing(folder, _old_house(folder), house, tasks, keep_stale=keep_stale)
+    except (OSError, sqlite3.Error) as error:
+        raise SuiteError(f"{folder}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
 
 
 def _standing(folder: Path, old_house: House | None, house: House, tasks: Tasks, *, keep_stale: bool) -> Standing:

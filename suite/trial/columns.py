@@ -17,7 +17,7 @@ from suite.auditor.verdicts import VERDICTS
 DType = Literal["string", "boolean", "Int64", "float64"]
 """Names of the pandas types that can hold a missing value."""
 
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 3
 """Version of the columns below; what an older version lacks is None when its rows are read."""
 
 OUTCOMES = (
@@ -108,6 +108,8 @@ MEASURED = (
     Column("min_clearance_m", "float64", "m", "smallest clearance to a true obstacle, negative in contact"),
     Column("state_checks", "Int64", "", "states checked for validity while planning"),
     Column("motion_checks", "Int64", "", "motions checked for validity while planning"),
+    Column("impossible_reason", "string", "", "why nobody can solve the scenario, where a bound failed", since=3),
+    Column("impossible_from_s", "float64", "s", "from when on nobody can arrive, where that is why", since=3),
     Column("message", "string", "", "what went wrong, when something did"),
     Column("audit_time_s", "float64", "s", "wall time of the audit", is_timing=True),
     Column("trial_wall_s", "float64", "s", "wall time of the whole trial", is_timing=True),
@@ -124,6 +126,7 @@ KEY_NAMES = (
     "planner",
     "settings",
     "predictor",
+    "prediction_margin",
     "limits",
     "noise_mm",
     "dropout",

@@ -117,9 +117,7 @@ def test_a_worker_with_another_version_of_the_suite_is_named(scheduler: str) -> 
     other = house() | {"sources": "0" * 16}
     with (
         patch.object(head, "house", return_value=other),
-        pytest.raises(
-            SuiteError, match=r"worker tcp://[\d.:]+: found another version of the suite there: the so"
-        ),
+        pytest.raises(SuiteError, match=r"worker tcp://[\d.:]+: found another version of the suite there: the so"),
     ):
         list(DaskCluster(scheduler, 0, prepare_nothing).run(Job(behave_slowly, 5.0), make_tasks(["a"])))
 
