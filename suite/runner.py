@@ -83,7 +83,7 @@ def run_experiment(
             if standing.left:
                 examples = [task for task in standing.examples.values() if not task.spec.failure]
                 warm_up_limit_s = max(LEAST_WARM_UP_S, hang_limit_s)
-                job = Job(run_trial, hang_limit_s, warm_up_parts(examples), warm_up_limit_s, examples)
+                job = Job(run_trial, hang_limit_s, warm_up_parts(examples), warm_up_limit_s, examples=examples)
                 _run(job, tasks.at(standing.left), journal, workers, quiet=quiet)
             from suite.show.derived import write_derived
 

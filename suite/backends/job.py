@@ -28,6 +28,13 @@ class Part:
     """Label of the planner whose trials alone need it and fail with it; None for what every trial needs."""
     is_shared: bool = True
     """Whether every process needs it before its first trial, else only the first to compile what other parts load."""
+    is_outside: bool = False
+    """Whether it is of a planner from outside, whose process is for nobody else."""
+
+    @property
+    def owner(self) -> str:
+        """That planner's label, or empty."""
+        return self.planner or "" if self.is_outside else ""
 
 
 @dataclass(frozen=True)
@@ -42,6 +49,8 @@ class Job:
     """The warm-up; what takes longest and what others are built on comes first."""
     warm_up_limit_s: float = LEAST_WARM_UP_S
     """A part that takes longer is killed and its planner's trials become ``planner_hung`` [s]."""
+    memory_limit_mb: float | None = None
+    """A task that takes more than its process had before is killed and becomes ``planner_memory`` [MB]."""
     examples: Sequence[TrialTask] = ()
     """A task of every kind that is to run, from which the parts were made; other machines make them anew."""
 

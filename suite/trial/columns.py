@@ -21,7 +21,7 @@ SCHEMA_VERSION = 3
 """Version of the columns below; what an older version lacks is None when its rows are read."""
 
 OUTCOMES = (
-    "reached", "collided", "timeout", "stuck", "planner_error", "planner_hung", "worker_lost", "invalid_scenario",
+    "reached", "collided", "timeout", "stuck", "planner_error", "planner_hung", "planner_memory", "worker_lost", "invalid_scenario",
 )  # fmt: skip
 
 

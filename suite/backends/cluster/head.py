@@ -34,7 +34,7 @@ CONNECT_LIMIT_S = 30.0
 END_LIMIT_S = 5.0
 GATHER_LIMIT_S = 60.0
 SETTINGS = {
-    "distributed.worker.daemon": False,  # daemons may have no children, and every planner runs in one
+    "distributed.worker.daemon": False,  # it starts processes of its own, which Python forbids daemons
     "distributed.worker.profile.enabled": False,
     "distributed.scheduler.allowed-failures": 0,  # a lost chunk is ours to divide
     "distributed.admin.large-graph-warning-threshold": "1GB",
@@ -78,6 +78,7 @@ class DaskCluster:
                 self._prepare,
                 job.hang_limit_s,
                 job.warm_up_limit_s,
+                job.memory_limit_mb,
                 tuple(job.examples),
                 sources_of(task.spec for task in job.examples),
             )
@@ -85,6 +86,9 @@ class DaskCluster:
             tell = (lambda: on_warm_up(job.parts[:1], job.parts[1:])) if on_warm_up and job.parts else lambda: None
             try:
                 yield from run.results(tell)
+            except KeyboardInterrupt:
+                yield from run.last_results()
+                raise
             finally:
                 run.end()
 
@@ -100,7 +104,11 @@ class DaskCluster:
             if address is None:
                 with _interrupts_held():
                     address = LocalCluster(
-                        n_workers=self._workers, threads_per_worker=1, dashboard_address=None, memory_limit=0
+                        n_workers=self._workers,
+                        threads_per_worker=1,
+                        dashboard_address="127.0.0.1:0",
+                        memory_limit=0,
+                        silence_logs=logging.CRITICAL,
                     )
                 stack.callback(address.close, timeout=END_LIMIT_S)
             try:
@@ -141,16 +149,27 @@ class _Run:
             self._settle_what_is_done()
         yield from chunks.results()
 
+    def last_results(self) -> Iterator[tuple[TrialTask, TrialResult]]:
+        """What the workers have by now: each ends with the trial that it is at."""
+        self._tell_all(self._client.run, end, self._name, on_error="ignore")
+        asked_s = time.monotonic()
+        while self._out and time.monotonic() - asked_s < END_LIMIT_S:
+            self._settle_what_is_done()
+            yield from self._chunks.results()
+
     def end(self) -> None:
         """Cancel what is handed out and let the workers' processes go."""
+        self._tell_all(self._client.cancel, [future for future, _, _ in self._out.values()])
+        self._tell_all(self._client.run, end, self._name, on_error="ignore")
 
-        def tell_all() -> None:
+    def _tell_all(self, tell: Callable[..., object], *message: object, **options: Any) -> None:
+        """Nobody waits for a worker that does not answer."""
+
+        def told() -> None:
             with suppress(Exception):
-                self._client.cancel([future for future, _, _ in self._out.values()])
-                self._client.run(end, self._name, on_error="ignore")
+                tell(*message, **options)
 
-        # Nobody waits for a worker that does not answer.
-        telling = threading.Thread(target=tell_all, daemon=True)
+        telling = threading.Thread(target=told, daemon=True)
         telling.start()
         telling.join(END_LIMIT_S)
 

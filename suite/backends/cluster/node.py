@@ -39,6 +39,7 @@ class Brief(NamedTuple):
     """Makes the parts of the warm-up from the examples."""
     hang_limit_s: float
     warm_up_limit_s: float
+    memory_limit_mb: float | None
     examples: tuple[TrialTask, ...]
     """One task of every kind that is to run."""
     sources: Sources
@@ -69,7 +70,8 @@ class _Slot:
         except BaseException:
             self._folder.cleanup()
             raise
-        self.crew = Crew([], 1, Job(brief.run, brief.hang_limit_s, parts, brief.warm_up_limit_s), [], None)
+        job = Job(brief.run, brief.hang_limit_s, parts, brief.warm_up_limit_s, brief.memory_limit_mb)
+        self.crew = Crew([], 1, job, [], None)
 
     def close(self) -> None:
         self.crew.close()
@@ -78,6 +80,8 @@ class _Slot:
 
 _SLOTS: dict[int, _Slot] = {}
 """By the thread that has it."""
+_OVER: set[str] = set()
+"""Names of runs that have ended."""
 
 
 def run_chunk(run: str, theirs: dict[str, object], brief: bytes, tasks: bytes) -> bytes:
@@ -93,6 +97,8 @@ def run_chunk(run: str, theirs: dict[str, object], brief: bytes, tasks: bytes) -
         For each task that was run the frame of its result under its place in the chunk; or one that says what is wrong
         with this node.
     """
+    if run in _OVER:
+        return b""
     try:
         if found := differences(theirs):
             raise SuiteError(f"found another version of the suite there: {found}")
@@ -113,6 +119,7 @@ def _framed(place: int, answer: TrialResult | Unreadable) -> bytes:
 
 def end(run: str) -> None:
     """Let a run's processes on this node go: at once, or those that are at a trial after it."""
+    _OVER.add(run)
     for thread, slot in list(_SLOTS.items()):
         if slot.run == run:
             slot.is_over = True
@@ -170,4 +177,6 @@ def _frames(slot: _Slot, tasks: list[TrialTask]) -> Iterator[bytes]:
             frame = _framed(places[task.key], result)
             n_bytes += len(frame)
             yield frame
+            if slot.is_over:
+                return
         size = max(1, min(2 * size, int(size * BATCH_S / max(time.monotonic() - batch_s, 1e-3))))

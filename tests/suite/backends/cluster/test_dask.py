@@ -22,14 +22,13 @@ from suite.backends.job import Job
 from suite.backends.processes import Processes
 from suite.cli.main import main
 from suite.errors import SuiteError
-from suite.experiment.code import house
+from suite.experiment.code import house, source_hash
 from suite.store.run_folder import read_trials
 from suite.trial.columns import TIMING_NAMES
 
 TESTS = Path(__file__).parents[3]
 QUIET = {"DASK_LOGGING__DISTRIBUTED": "critical", "DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED": "False"}
 FAILURES = {"DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "0"}
-NO_DAEMON = {"DASK_DISTRIBUTED__WORKER__DAEMON": "False"}
 
 
 @contextmanager
@@ -37,7 +36,7 @@ def started(part: str, *options: str) -> Iterator[subprocess.Popen[str]]:
     """A scheduler or a worker, as ``dask scheduler`` and ``dask worker`` start it."""
     path = {"PYTHONPATH": f"{TESTS.parent}{os.pathsep}{TESTS}"}
     command = [sys.executable, "-m", f"distributed.cli.dask_{part}", *options]
-    environment = os.environ | QUIET | FAILURES | NO_DAEMON | path
+    environment = os.environ | QUIET | FAILURES | path
     process = subprocess.Popen(command, env=environment, stderr=subprocess.DEVNULL, text=True, start_new_session=True)
     try:
         yield process
@@ -94,7 +93,8 @@ def test_two_workers_give_the_rows_of_local_ones_also_when_one_is_killed_three_t
 
 
 def head_process(folder: Path, scheduler: str) -> subprocess.Popen[bytes]:
-    call = f"from fake_runs import *; run_with_fakes(Path({str(folder)!r}), trials=40, scheduler={scheduler!r})"
+    arguments = f"trials=40, sources={source_hash()!r}, scheduler={scheduler!r}"
+    call = f"from fake_runs import *; run_with_fakes(Path({str(folder)!r}), {arguments})"
     path = os.environ | {"PYTHONPATH": f"{TESTS.parent}{os.pathsep}{TESTS}"}
     return subprocess.Popen([sys.executable, "-c", call], env=path, stderr=subprocess.DEVNULL)
 
@@ -108,8 +108,9 @@ def test_a_head_that_is_killed_goes_on_where_it_was(scheduler: str, tmp_path: Pa
     first.wait()
     there = len(read_trials(tmp_path / "run", ["planner"]))
     assert 3 < there < 160
-    assert len(run_with_fakes(tmp_path / "run", trials=40, scheduler=scheduler)) == 160 - there
-    run_with_fakes(tmp_path / "local", trials=40)
+    again = run_with_fakes(tmp_path / "run", trials=40, sources=source_hash(), scheduler=scheduler)
+    assert len(again) == 160 - there
+    run_with_fakes(tmp_path / "local", trials=40, sources=source_hash())
     assert contents(tmp_path / "run") == contents(tmp_path / "local")
 
 

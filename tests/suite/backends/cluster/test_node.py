@@ -1,11 +1,13 @@
 """What a Dask worker does, without Dask."""
 
 import os
+import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
-from fakes import behave, behave_and_tell, make_tasks, prepare_nothing
+from fakes import behave, behave_and_tell, behave_slowly, make_tasks, prepare_nothing
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -31,7 +33,7 @@ class Mine(ArmPlanner):
 
 def brief_for(run: object = behave, tasks: list[TrialTask] | None = None) -> Brief:
     specs = [task.spec for task in tasks or []]
-    return Brief(house(), run, prepare_nothing, 2.0, 60.0, tuple(tasks or ()), sources_of(specs))
+    return Brief(house(), run, prepare_nothing, 2.0, 60.0, None, tuple(tasks or ()), sources_of(specs))
 
 
 @pytest.fixture(autouse=True)
@@ -40,6 +42,7 @@ def no_slots_left() -> Iterator[None]:
     for run in ("one", "two"):
         end(run)
     assert node._SLOTS == {}
+    node._OVER.clear()
 
 
 def test_a_chunk_gives_the_rows_that_its_tasks_give_here() -> None:
@@ -78,6 +81,19 @@ def test_a_long_chunk_comes_back_with_what_it_has(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(node, "MAX_BYTES", 10)
     answer = run_chunk("one", house(), wrapped(brief_for()), wrapped(make_tasks(["a"], trials=5)))
     assert list(results_in(answer, 5)) == [0]
+
+
+def test_a_run_that_is_over_stops_after_the_trial_it_is_at() -> None:
+    tasks = make_tasks(["a"], trials=200)
+    with ThreadPoolExecutor(1) as pool:
+        running = pool.submit(run_chunk, "one", house(), wrapped(brief_for(behave_slowly)), wrapped(tasks))
+        while not node._SLOTS:
+            time.sleep(0.01)
+        time.sleep(0.5)
+        end("one")
+        answer = running.result()
+    assert len(results_in(answer, 200)) < 200
+    assert run_chunk("one", house(), wrapped(brief_for()), wrapped(tasks)) == b""  # those that wait are not begun
 
 
 def test_another_version_of_the_suite_is_refused_and_nothing_of_it_read() -> None:
