@@ -19,6 +19,7 @@ from suite.cli.check import check
 from suite.cli.check_planner import check_planner
 from suite.cli.compare import compare
 from suite.cli.generate import generate
+from suite.cli.importing import importing
 from suite.cli.merge import merge
 from suite.cli.new_planner import new_planner
 from suite.cli.options import EXIT_INTERRUPTED, EXIT_USAGE, say
@@ -38,6 +39,7 @@ for verb in (
     run, table, compare, merge, plot, generate, planners, new_planner, check_planner, predictors, check, audit, version,
 ):  # fmt: skip
     app.command()(verb)
+app.add_typer(importing, name="import")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -93,7 +93,7 @@ def test_two_workers_give_the_rows_of_local_ones_also_when_one_is_killed_three_t
 
 
 def head_process(folder: Path, scheduler: str) -> subprocess.Popen[bytes]:
-    arguments = f"trials=40, sources={source_hash()!r}, scheduler={scheduler!r}"
+    arguments = f"trials=40, sources={source_hash()!r}, where={scheduler!r}"
     call = f"from fake_runs import *; run_with_fakes(Path({str(folder)!r}), {arguments})"
     path = os.environ | {"PYTHONPATH": f"{TESTS.parent}{os.pathsep}{TESTS}"}
     return subprocess.Popen([sys.executable, "-c", call], env=path, stderr=subprocess.DEVNULL)
@@ -108,7 +108,7 @@ def test_a_head_that_is_killed_goes_on_where_it_was(scheduler: str, tmp_path: Pa
     first.wait()
     there = len(read_trials(tmp_path / "run", ["planner"]))
     assert 3 < there < 160
-    again = run_with_fakes(tmp_path / "run", trials=40, sources=source_hash(), scheduler=scheduler)
+    again = run_with_fakes(tmp_path / "run", trials=40, sources=source_hash(), where=scheduler)
     assert len(again) == 160 - there
     run_with_fakes(tmp_path / "local", trials=40, sources=source_hash())
     assert contents(tmp_path / "run") == contents(tmp_path / "local")
