@@ -36,7 +36,7 @@ def run_with_fakes(
 ) -> list[str]:
     """Sixteen trials unless ``changes`` of the experiment say otherwise.
 
-    They run ``where`` there are so many processes, 0 being this one, or at a scheduler's address, where they take longer.
+    They run ``where`` there are so many processes, 0 being this one, or at a scheduler's address, in some time.
     Takes its own process down after ``die_after`` trials. ``codes`` are hashes of planners' own code, by label.
     Returns the labels of the trials that were run, sorted.
     """

@@ -141,3 +141,25 @@ def test_a_cluster_is_started_here_and_ended(tmp_path: Path, capfd: pytest.Captu
     children = Path(f"/proc/{os.getpid()}/task/{os.getpid()}/children")
     commands = [Path(f"/proc/{child}/cmdline").read_bytes() for child in children.read_text().split()]
     assert not [command for command in commands if b"spawn_main" in command]
+
+
+def test_without_dask_one_line_says_how_to_get_it(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    assert main(["run", "--planners", "pf", "--backend", "dask", "--out", str(tmp_path / "run")]) == 2
+    line = "suite: error: backend: found no dask, allowed with it: pip install 'continuum-arm-suite[cluster]'\n"
+    assert capfd.readouterr().err == line
+    assert not (tmp_path / "run").exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "line"),
+    [
+        (["--scheduler", "tcp://a:1"], "--scheduler: found beside --backend local, allowed with --backend dask"),
+        (["--backend", "dask", "--scheduler", "tcp://a:1", "--workers", "2"], "--workers: found beside --scheduler"),
+    ],
+)
+def test_options_that_do_not_go_together(options: list[str], line: str, capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "--planners", "pf", *options]) == 2
+    assert line in capfd.readouterr().err
