@@ -2,7 +2,7 @@
 
 from scenarios.arm import ContinuumArm
 from scenarios.collision import are_states_valid, clearance, clearances, is_motion_valid, is_state_valid
-from scenarios.errors import ScenarioError
+from scenarios.errors import FileError, ScenarioError, UserError
 from scenarios.families import FAMILIES, generate, start_is_free
 from scenarios.files import load_scenarios, save_scenarios
 from scenarios.motion import Line, Orbit, Track, Wander, Wave
@@ -20,6 +20,7 @@ __all__ = [
     "Capsule",
     "ContinuumArm",
     "Cylinder",
+    "FileError",
     "Line",
     "Mesh",
     "Obstacle",
@@ -31,6 +32,7 @@ __all__ = [
     "ShapedWorld",
     "SpecError",
     "Track",
+    "UserError",
     "Wander",
     "Wave",
     "are_states_valid",

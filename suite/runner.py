@@ -41,6 +41,7 @@ def run_experiment(
     *,
     workers: int | Processes,
     hang_limit_s: float = DEFAULT_HANG_LIMIT_S,
+    memory_limit_mb: float | None = None,
     fresh: bool = False,
     keep_stale: bool = False,
 ) -> pd.DataFrame:
@@ -53,6 +54,8 @@ def run_experiment(
             nobody can kill a planner that hangs.
         hang_limit_s: A trial that takes longer is killed and recorded as ``planner_hung`` [s]. So is a planner's
             warm-up, which has two minutes at the least: it may have to compile.
+        memory_limit_mb: A trial that takes more than its process had before is killed and recorded as
+            ``planner_memory`` [MB]; no limit when None.
         fresh: Start over, whatever an earlier run has left in the folder.
         keep_stale: Use rows that other code has made as they are.
 
@@ -77,7 +80,7 @@ def run_experiment(
         threading.Thread(target=importlib.import_module, args=["suite.show.derived"], daemon=True).start()
         try:
             if left:
-                _run(left, journal, workers, hang_limit_s)
+                _run(left, journal, workers, hang_limit_s, memory_limit_mb)
             from suite.show.derived import write_derived
 
             return write_derived(folder, journal, scenarios, experiment.codes())
@@ -85,14 +88,21 @@ def run_experiment(
             raise RunInterrupted(len(journal.finished()), len(tasks)) from None
 
 
-def _run(tasks: Sequence[TrialTask], journal: Journal, workers: int | Processes, hang_limit_s: float) -> None:
+def _run(
+    tasks: Sequence[TrialTask],
+    journal: Journal,
+    workers: int | Processes,
+    hang_limit_s: float,
+    memory_limit_mb: float | None,
+) -> None:
     """Run every task and store each result as it comes."""
     for task in tasks:
         if task.spec.failure:
             journal.add(task, failed_trial(task, task.spec.failure, 0.0))
     tasks = [task for task in tasks if not task.spec.failure]
     backend: Backend = InProcess() if workers == 0 else Processes(workers) if isinstance(workers, int) else workers
-    job = Job(run_trial, hang_limit_s, warm_up_parts(tasks), max(LEAST_WARM_UP_S, hang_limit_s))
+    warm_up_limit_s = max(LEAST_WARM_UP_S, hang_limit_s)
+    job = Job(run_trial, hang_limit_s, warm_up_parts(tasks), warm_up_limit_s, memory_limit_mb)
     with progress(len(tasks)) as report, closing(backend.run(job, tasks, report.warm_up)) as finished:
         for task, result in finished:
             journal.add(task, result)

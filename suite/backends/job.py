@@ -41,6 +41,8 @@ class Job:
     """The warm-up; what takes longest and what others are built on comes first."""
     warm_up_limit_s: float = LEAST_WARM_UP_S
     """A part that takes longer is killed and its planner's trials become ``planner_hung`` [s]."""
+    memory_limit_mb: float | None = None
+    """A task that takes more than its process had before is killed and becomes ``planner_memory`` [MB]."""
 
     def needed_by(self, task: TrialTask) -> list[Part]:
         """What a process has to have warmed up before ``task``."""

@@ -7,7 +7,9 @@ from typing import Annotated
 
 import typer
 
+from suite.backends.memory import CAN_BE_MEASURED
 from suite.backends.processes import Processes
+from suite.cli.cores import cores
 from suite.cli.options import (
     EXIT_INTERRUPTED,
     Arm,
@@ -15,7 +17,6 @@ from suite.cli.options import (
     Obstacles,
     Seed,
     Trials,
-    cores,
     experiment_of,
     say,
     split,
@@ -57,6 +58,9 @@ def run(
     hang_limit_s: Annotated[
         float, typer.Option(help="A trial that takes longer is killed; a warm-up has 120 s at least.")
     ] = 300.0,
+    memory_limit_mb: Annotated[
+        float | None, typer.Option(help="A trial that takes more memory is killed. [default: no limit]")
+    ] = None,
     out: Annotated[Path | None, typer.Option(help="Folder of the run. [default: results/NAME]")] = None,
     fresh: Annotated[bool, typer.Option("--fresh", help="Start over what the folder holds.")] = False,
     keep_stale: Annotated[
@@ -66,6 +70,10 @@ def run(
     """Run every planner on the same scenarios and compare them; what a run in the folder has already is kept."""
     n_workers = within("--workers", cores() if workers is None else workers, 1, 1024)
     within("--hang-limit-s", hang_limit_s, 1, 1e6)
+    if memory_limit_mb is not None:
+        if not CAN_BE_MEASURED:
+            raise usage("--memory-limit-mb: found it on a system that does not tell, allowed on Linux")
+        within("--memory-limit-mb", memory_limit_mb, 1, 1e9)
     if fresh and keep_stale:
         raise usage("--keep-stale: found beside --fresh, allowed one of them")
     with Processes(n_workers) as processes:  # the first is on its way while this process imports what follows
@@ -89,7 +97,13 @@ def run(
         folder = out or Path("results") / experiment.name
         try:
             summary = run_experiment(
-                experiment, folder, workers=processes, hang_limit_s=hang_limit_s, fresh=fresh, keep_stale=keep_stale
+                experiment,
+                folder,
+                workers=processes,
+                hang_limit_s=hang_limit_s,
+                memory_limit_mb=memory_limit_mb,
+                fresh=fresh,
+                keep_stale=keep_stale,
             )
         except RunInterrupted as stop:
             say(f"stopped: {stop} in {folder}; the same command goes on from there")

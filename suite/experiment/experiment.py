@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import json
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -15,12 +14,14 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 from planners import PREDICTORS, PlannerSpec, describe, label_of
 from scenarios import ContinuumArm, Scenario, generate, load_scenarios
 from scenarios.families import parse_family
+from scenarios.reading import read_json
 from scenarios.spec import known_name
 from suite.errors import SuiteError, one_line
 from suite.experiment.code import house, house_code
 from suite.trial.task import Code, TrialTask
 
 MAX_TRIALS_IN_ALL = 1_000_000
+MAX_MANIFEST_BYTES = 4 * 1024 * 1024
 
 
 class Experiment(BaseModel):
@@ -168,18 +169,16 @@ def preset_fields(preset: str) -> dict[str, Any]:
         preset: A name in ``PRESETS``, or a file ``manifest.json`` of a run.
 
     Raises:
-        SuiteError: There is no such name or file, or no experiment in it.
+        SuiteError, FileError: There is no such name or file, or no experiment in it.
     """
     if preset in PRESETS:
         return PRESETS[preset]
     if not preset.endswith(".json"):
         raise SuiteError(f"preset: found {preset!r}, allowed {', '.join(PRESETS)} or the manifest.json of a run")
-    try:
-        fields = json.loads(Path(preset).read_text(encoding="utf-8"))["experiment"]
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise SuiteError(f"{preset}: found no experiment in it ({type(error).__name__})") from None
+    manifest = read_json(Path(preset), MAX_MANIFEST_BYTES)
+    fields = manifest.get("experiment") if isinstance(manifest, dict) else None
     if not isinstance(fields, dict):
-        raise SuiteError(f"{preset}: experiment: found {fields!r}, allowed its fields by name")
+        raise SuiteError(f"{preset}: found no experiment in it, allowed the manifest.json of a run")
     return fields
 
 

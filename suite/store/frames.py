@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import sys
+import warnings
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import pandas as pd
 
 from planners import is_bound
+from scenarios import FileError
+from scenarios.reading import first_twice, read_text, unreadable
 from suite.auditor.verdicts import VERDICTS
 from suite.errors import SuiteError
 from suite.store.schema import old_margin
 from suite.trial.columns import COLUMN_NAMES, COLUMNS, CONDITIONS, Column, Row
+
+MAX_CSV_BYTES = 1024**3
 
 SORTED_BY = ["family", "n_obstacles", "scenario_id", "planner", *(column.name for column in CONDITIONS)]
 """The order of rows in files, which does not depend on the order in which trials finished."""
@@ -72,9 +79,10 @@ def read_trials_csv(file: Path) -> pd.DataFrame:
     """Read what ``trials_csv`` wrote, now or before rows said as much as they do.
 
     Raises:
-        SuiteError: The file cannot be read, or a column is missing or holds something else than it should.
+        FileError: The file cannot be read, or a column holds something else than it should.
+        SuiteError: A column is missing.
     """
-    frame = _read_csv(file, {column.name: column.dtype for column in COLUMNS})
+    frame = read_columns(file, {column.name: column.dtype for column in COLUMNS})
     is_old = not any(column.since > 1 and column.name in frame for column in COLUMNS)
     missing = [column.name for column in COLUMNS if column.name not in frame and not (is_old and column.since > 1)]
     if missing:
@@ -93,9 +101,10 @@ def read_table_csv(file: Path) -> pd.DataFrame:
     """Read a summary as it was written, now or before tables said under which conditions.
 
     Raises:
-        SuiteError: The file cannot be read, or is no summary.
+        FileError: The file cannot be read.
+        SuiteError: It is no summary.
     """
-    frame = _read_csv(file, TABLE_TYPES)
+    frame = read_columns(file, TABLE_TYPES)
     missing = [name for name in TABLE_TYPES if name not in frame and name not in _NEW_IN_TABLES]
     if missing:
         raise SuiteError(f"{file}: found no column {missing[0]}, a table has one")
@@ -108,11 +117,27 @@ def _with_unknown(frame: pd.DataFrame, columns: Iterable[Column]) -> pd.DataFram
     return frame.assign(**{c.name: pd.Series(empty, frame.index, c.dtype) for c in columns if c.name not in frame})
 
 
-def _read_csv(file: Path, types: Mapping[str, str]) -> pd.DataFrame:
+def read_columns(file: Path, types: Mapping[str, str]) -> pd.DataFrame:
+    """Read a CSV; its columns that ``types`` names have these types, an empty cell is a missing value.
+
+    Raises:
+        FileError: The file cannot be read, is larger than ``MAX_CSV_BYTES``, has a column twice or a line that does
+            not fit the header, or a value is not of its column's type.
+    """
+    text = read_text(file, MAX_CSV_BYTES)
     try:
-        return pd.read_csv(file, dtype=dict(types), keep_default_na=False, na_values=[""])
-    except (OSError, ValueError, TypeError) as error:
-        raise SuiteError(f"{file}: cannot be read: {error}"[:300]) from None
+        twice = first_twice(next(csv.reader(io.StringIO(text)), []))
+        if twice is not None:
+            raise FileError(f"{file}: found the column {twice!r} twice, allowed once")
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", pd.errors.ParserWarning)  # lines that are too long would be cut
+            return pd.read_csv(
+                io.StringIO(text), dtype=dict(types), keep_default_na=False, na_values=[""], index_col=False
+            )
+    except FileError:
+        raise
+    except (csv.Error, ValueError, TypeError, OverflowError, pd.errors.ParserWarning) as error:
+        raise unreadable(file, error) from None
 
 
 def refuse_gaps(trials: pd.DataFrame, file: Path) -> pd.DataFrame:

@@ -11,8 +11,10 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from scenarios.reading import read_json
 from suite.errors import SuiteError
 from suite.experiment.code import House, changes
+from suite.experiment.experiment import MAX_MANIFEST_BYTES
 from suite.experiment.manifest import Manifest
 from suite.files import write_text
 from suite.store.frames import read_table_csv, read_trials_csv, refuse_gaps, trials_frame
@@ -35,15 +37,12 @@ def read_manifest(folder: Path) -> Manifest | None:
     """The manifest of the run in ``folder``, None if there is none.
 
     Raises:
-        SuiteError: The file cannot be read.
+        SuiteError, FileError: The file cannot be read, or is no manifest.
     """
     file = folder / MANIFEST
-    try:
-        manifest = json.loads(file.read_text(encoding="utf-8"))
-    except (FileNotFoundError, NotADirectoryError):
+    if not os.path.lexists(file):
         return None
-    except (OSError, ValueError) as error:
-        raise SuiteError(f"{file}: cannot be read: {error}") from None
+    manifest = read_json(file, MAX_MANIFEST_BYTES)
     if not isinstance(manifest, dict) or not isinstance(manifest.get("experiment"), dict):
         raise SuiteError(f"{file}: found no experiment in it, allowed: the manifest of a run")
     return manifest
@@ -52,7 +51,8 @@ def read_manifest(folder: Path) -> Manifest | None:
 def planner_order(folder: Path) -> tuple[str, ...]:
     """Planner labels in the order in which they were asked for; empty if unknown."""
     manifest = read_manifest(folder)
-    return tuple(present_codes(manifest)) or tuple((manifest or {}).get("experiment", {}).get("planners", ()))
+    asked = (manifest or {}).get("experiment", {}).get("planners", ())
+    return tuple(present_codes(manifest)) or (tuple(map(str, asked)) if isinstance(asked, list) else ())
 
 
 def present_codes(manifest: Manifest | None) -> dict[str, Code]:

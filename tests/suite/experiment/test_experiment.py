@@ -3,7 +3,7 @@ import json
 import pytest
 from fakes import fake_spec, make_scenario
 
-from scenarios import save_scenarios
+from scenarios import UserError, save_scenarios
 from suite.errors import SuiteError
 from suite.experiment.code import house, house_code
 from suite.experiment.experiment import PRESETS, make_experiment, preset_fields
@@ -154,7 +154,7 @@ def test_a_manifest_reruns_its_experiment(tmp_path) -> None:
 def test_a_file_without_an_experiment_is_no_preset(tmp_path, text: str) -> None:
     file = tmp_path / "manifest.json"
     file.write_text(text)
-    with pytest.raises(SuiteError, match="experiment"):
+    with pytest.raises(UserError, match="experiment"):
         preset_fields(str(file))
 
 
