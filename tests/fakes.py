@@ -56,11 +56,11 @@ WRONG: dict[str, dict[str, object]] = {
 
 def _channels() -> list[int]:
     """File descriptors of this process's sockets."""
-    handles = {int(link.name): os.stat(link) for link in Path("/proc/self/fd").iterdir() if link.exists()}
+    handles = {int(link.name): link.stat() for link in Path("/proc/self/fd").iterdir() if link.exists()}
     return [handle for handle, found in handles.items() if stat.S_ISSOCK(found.st_mode)]
 
 
-def _mischief(task: TrialTask) -> None:
+def _mischief(task: TrialTask) -> None:  # noqa: C901  a case is a trick
     """Do to this process what the planner's label says."""
     match task.spec.label:
         case "garbage":

@@ -86,7 +86,7 @@ class WorkerProcess:
             stdout=their_output,
             stderr=their_output,
             pass_fds=[theirs.fileno()],
-            env=_ONE_THREAD | os.environ,
+            env=_ONE_THREAD | {"SUITE_CACHE_FALLBACK": f"continuum-arm-suite-{os.getpid()}"} | os.environ,
             start_new_session=True,
         )
         theirs.close()  # the death of the process now shows as the end of our side
