@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import sqlite3
 import threading
 from collections.abc import Sequence
 from contextlib import closing
@@ -14,6 +15,7 @@ from suite.backends.job import LEAST_WARM_UP_S, Backend, Job
 from suite.backends.local import InProcess
 from suite.backends.processes import Processes
 from suite.backends.warm_up import warm_up_parts
+from suite.errors import SuiteError
 from suite.experiment.experiment import Experiment
 from suite.experiment.manifest import make_manifest
 from suite.progress import note, progress
@@ -86,6 +88,11 @@ def run_experiment(
             return write_derived(folder, journal, scenarios, experiment.codes())
         except KeyboardInterrupt:
             raise RunInterrupted(len(journal.finished()), len(tasks)) from None
+        except (OSError, sqlite3.Error) as error:
+            reason = getattr(error, "strerror", None) or error
+            raise SuiteError(
+                f"{folder}: stopped: {reason}; what had finished is saved, and the same command goes on from there"
+            ) from None
 
 
 def _run(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
 import sqlite3
@@ -13,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from scenarios.reading import read_json
 from suite.errors import SuiteError
-from suite.experiment.code import House, changes
+from suite.experiment.code import House, changes, is_house
 from suite.experiment.experiment import MAX_MANIFEST_BYTES
 from suite.experiment.manifest import Manifest
 from suite.files import write_text
@@ -21,6 +20,7 @@ from suite.store.frames import read_table_csv, read_trials_csv, refuse_gaps, tri
 from suite.store.growth import Standing, settle
 from suite.store.journal import Journal
 from suite.store.schema import is_journal
+from suite.store.volume import held
 from suite.trial.task import Code, TrialTask
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ def read_trials(folder: Path) -> pd.DataFrame | None:
             with Journal(folder / JOURNAL, read_only=True, old_house=_old_house(folder)) as journal:
                 return refuse_gaps(trials_frame(journal.rows()), folder / JOURNAL)
         except (OSError, sqlite3.Error) as error:
-            raise SuiteError(f"{folder / JOURNAL}: cannot be read: {error}"[:300]) from None
+            raise SuiteError(f"{folder / JOURNAL}: cannot be read: {error}{_damaged(error)}") from None
     return refuse_gaps(read_trials_csv(folder / TRIALS), folder / TRIALS) if (folder / TRIALS).exists() else None
 
 
@@ -113,7 +113,7 @@ def open_run(
         try:
             _refuse_strangers(folder)
             folder.mkdir(parents=True, exist_ok=True)
-            stack.enter_context(_held(folder))
+            stack.enter_context(held(folder))
             if fresh:
                 _forget(folder, manifest)
             house = {part: manifest[part] for part in ("sources", "versions")}
@@ -124,10 +124,15 @@ def open_run(
             journal.complete(tasks)
             _write_manifest(folder, manifest)
         except (OSError, sqlite3.Error) as error:
-            raise SuiteError(
-                f"{folder}: cannot be read or written: {getattr(error, 'strerror', None) or error}"
-            ) from None
+            reason = getattr(error, "strerror", None) or error
+            raise SuiteError(f"{folder}: cannot be read or written: {reason}{_damaged(error)}") from None
         yield journal, standing
+
+
+def _damaged(error: Exception) -> str:
+    """What to do about a journal of which a part is lost."""
+    is_damaged = isinstance(error, sqlite3.DatabaseError) and not isinstance(error, sqlite3.OperationalError)
+    return f"; the last {TRIALS} may still be whole, and --fresh starts over" if is_damaged else ""
 
 
 def _standing(
@@ -151,10 +156,8 @@ def _standing(
 def _old_house(folder: Path) -> House | None:
     """What made the rows of a run of the first version: its manifest says it, once for all of them."""
     manifest = read_manifest(folder) or {}
-    sources, versions = manifest.get("sources"), manifest.get("versions")
-    if "schema_version" in manifest or not (isinstance(sources, str) and isinstance(versions, dict)):
-        return None
-    return {"sources": sources, "versions": versions}
+    house = {part: manifest.get(part) for part in ("sources", "versions")}
+    return house if is_house(house) and "schema_version" not in manifest else None
 
 
 def _forget(folder: Path, manifest: Manifest) -> None:
@@ -177,17 +180,3 @@ def _refuse_strangers(folder: Path) -> None:
     others = [entry.name for entry in folder.iterdir() if not entry.name.startswith(".")]
     if others and MANIFEST not in others and not (JOURNAL in others and is_journal(folder / JOURNAL)):
         raise SuiteError(f"{folder}: found {others[0]} and no {MANIFEST}, allowed: an empty folder or that of a run")
-
-
-@contextmanager
-def _held(folder: Path) -> Iterator[None]:
-    """Hold a lock on the folder itself; it goes with the process, however that ends."""
-    handle = os.open(folder, os.O_RDONLY)
-    try:
-        try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise SuiteError(f"{folder}: another process is running in it, allowed: one at a time") from None
-        yield
-    finally:
-        os.close(handle)
