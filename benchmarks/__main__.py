@@ -16,6 +16,7 @@ def main() -> None:
     from benchmarks.boundary import boundary
     from benchmarks.continuous import solve_times
     from benchmarks.first_minute import first_minute
+    from benchmarks.gate import gate
     from benchmarks.planning import against_literal, growth
     from benchmarks.proofs import possible, soundness
     from benchmarks.strrt import against_ompl
@@ -35,6 +36,7 @@ def main() -> None:
         "first-minute": ("The first minute, beside an earlier version", first_minute),
         "possible": ("What is proven impossible, seed 0", possible),
         "soundness": ("Proofs against planners", soundness),
+        "gate": ("False alarms and power of suite compare", gate),
         "strrt": ("ST-RRT* against that of OMPL 1.7.0, future known", against_ompl),
     }
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
@@ -42,7 +44,7 @@ def main() -> None:
         "parts",
         nargs="*",
         metavar="part",
-        help=f"which to run: {', '.join(parts)}; all by default, but for the last four",
+        help=f"which to run: {', '.join(parts)}; all by default, but for the last five",
     )
     parser.add_argument("--quick", action="store_true", help="fewer and smaller samples: two minutes, not eight")
     given = parser.parse_args()
@@ -51,7 +53,7 @@ def main() -> None:
         parser.error(f"part: found {unknown[0]!r}, allowed {', '.join(parts)}")
     sys.stdout.write(f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}\n")
     # Only when asked for: these take many minutes, and strrt installs another OMPL first, 700 MB in the cache folder.
-    for name in given.parts or list(parts)[:-4]:
+    for name in given.parts or list(parts)[:-5]:
         title, measure = parts[name]
         sys.stdout.write(f"\n{render(title, measure(given.quick))}")
         sys.stdout.flush()

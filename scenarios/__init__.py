@@ -3,10 +3,11 @@
 from scenarios.arm import ContinuumArm
 from scenarios.collision import are_states_valid, clearance, clearances, is_motion_valid, is_state_valid
 from scenarios.errors import FileError, ScenarioError, UserError
-from scenarios.families import FAMILIES, generate, start_is_free
+from scenarios.families import FAMILIES, drawn, generate, start_is_free
 from scenarios.files import load_scenarios, save_scenarios
 from scenarios.motion import Line, Orbit, Track, Wander, Wave
 from scenarios.obstacle import Obstacle
+from scenarios.packed import PackedScenarios
 from scenarios.scenario import STEP_S, Scenario
 from scenarios.shaped_world import ShapedWorld, shaped_world
 from scenarios.shapes import Box, Capsule, Cylinder, Mesh, Shape
@@ -25,6 +26,7 @@ __all__ = [
     "Mesh",
     "Obstacle",
     "Orbit",
+    "PackedScenarios",
     "SampledWorld",
     "Scenario",
     "ScenarioError",
@@ -39,6 +41,7 @@ __all__ = [
     "clearance",
     "clearances",
     "cover_world",
+    "drawn",
     "generate",
     "is_motion_valid",
     "is_state_valid",

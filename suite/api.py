@@ -7,6 +7,7 @@ unless ``processes`` asks for workers.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal, TypedDict, Unpack
 
@@ -22,13 +23,22 @@ from suite.auditor import Audit
 from suite.auditor import audit as judge
 from suite.auditor.certificate import certified_contacts
 from suite.auditor.fcl_engine import sampled_contacts
+from suite.compare.gate import Bar, Comparison, compare_runs
+from suite.compare.possible import scenarios_frame
 from suite.compare.tables import summarize
 from suite.errors import SuiteError
 from suite.experiment.experiment import make_experiment, preset_fields
 from suite.runner import DEFAULT_HANG_LIMIT_S, run_experiment
 from suite.show.text import cells
 from suite.store.journal import Executed, Journal
-from suite.store.run_folder import JOURNAL, planner_order, present_codes, read_manifest, read_trials
+from suite.store.run_folder import (
+    JOURNAL,
+    house_changes,
+    planner_order,
+    present_codes,
+    read_manifest,
+    read_trials,
+)
 from suite.trial import episode
 from suite.trial.observation import Observer
 from suite.trial.task import TrialResult, TrialTask
@@ -60,6 +70,24 @@ class Run:
     def table(self) -> pd.DataFrame:
         """The comparison: one row per condition and planner, with 95 % Wilson intervals."""
         return summarize(self.trials, planner_order(self.folder), present_codes(read_manifest(self.folder)))
+
+    def scenarios(self) -> pd.DataFrame:
+        """One row per scenario: possible or not, who solved it, why nobody can; see ``suite.compare.possible``."""
+        return scenarios_frame(self.trials)
+
+    def compare(self, new: Run, **bar: Any) -> Comparison:
+        """Judge another run against this one, as ``suite compare`` does.
+
+        Args:
+            new: What is held against this run.
+            **bar: Fields of ``suite.compare.gate.Bar``: ``margin``, ``alpha``, ``cost_margin``, ``verdict``,
+                ``across``.
+
+        Raises:
+            SuiteError: A number is out of range, or a condition unknown.
+        """
+        found = compare_runs(self.trials, new.trials, Bar(**bar))
+        return replace(found, differing=(*found.differing, *house_changes(self.folder, new.folder)))
 
     def trajectory(self, scenario: str, planner: str) -> Executed:
         """What a planner executed in a scenario: times (k,) [s] and configurations (k, dof) [rad].

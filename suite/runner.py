@@ -5,8 +5,8 @@ from __future__ import annotations
 import importlib
 import sqlite3
 import threading
-from collections.abc import Sequence
 from contextlib import closing
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,9 +20,10 @@ from suite.experiment.experiment import Experiment
 from suite.experiment.manifest import make_manifest
 from suite.progress import note, progress
 from suite.store.journal import Journal
-from suite.store.run_folder import open_run
+from suite.store.run_folder import open_run, read_table
+from suite.store.stamp import is_finished, stamp
 from suite.trial.episode import run_trial
-from suite.trial.task import TrialTask, failed_trial
+from suite.trial.lineup import Lineup, Tasks
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -68,24 +69,31 @@ def run_experiment(
         SuiteError, ScenarioError: The experiment cannot be run like this; found before anything is written.
         RunInterrupted: Stopped by the user; the next call goes on from there.
     """
+    asked = experiment.fingerprint()
+    if not fresh and is_finished(folder, asked):
+        return read_table(folder)
     scenarios = experiment.scenarios()
-    for arm in {scenario.arm for scenario in scenarios}:
+    for arm in scenarios.arms:
         check_fit(experiment.specs(), arm)
-    tasks = list(experiment.tasks(scenarios))
+    tasks = Lineup(partial(experiment.tasks, scenarios), range(len(scenarios) * len(experiment.planners)))
     manifest = make_manifest(experiment, scenarios)
     with open_run(folder, manifest, tasks, fresh=fresh, keep_stale=keep_stale) as (journal, standing):
         for line in standing.notes():
             note(line)
-        finished = journal.finished()
-        left = [task for task in tasks if task.key not in finished]
         # Pandas takes as long to import as workers to load their kernels.
         threading.Thread(target=importlib.import_module, args=["suite.show.derived"], daemon=True).start()
         try:
-            if left:
-                _run(left, journal, workers, hang_limit_s, memory_limit_mb)
+            if standing.left:
+                parts = warm_up_parts(task for task in standing.examples.values() if not task.spec.failure)
+                warm_up_limit_s = max(LEAST_WARM_UP_S, hang_limit_s)
+                job = Job(run_trial, hang_limit_s, parts, warm_up_limit_s, memory_limit_mb)
+                _run(job, tasks.at(standing.left), journal, workers)
             from suite.show.derived import write_derived
 
-            return write_derived(folder, journal, scenarios, experiment.codes())
+            summary = write_derived(folder, journal, scenarios, experiment.codes())
+            if not standing.kept:  # a run with rows of other code asks anew each time
+                stamp(folder, asked, journal)
+            return summary
         except KeyboardInterrupt:
             raise RunInterrupted(len(journal.finished()), len(tasks)) from None
         except (OSError, sqlite3.Error) as error:
@@ -95,21 +103,9 @@ def run_experiment(
             ) from None
 
 
-def _run(
-    tasks: Sequence[TrialTask],
-    journal: Journal,
-    workers: int | Processes,
-    hang_limit_s: float,
-    memory_limit_mb: float | None,
-) -> None:
+def _run(job: Job, tasks: Tasks, journal: Journal, workers: int | Processes) -> None:
     """Run every task and store each result as it comes."""
-    for task in tasks:
-        if task.spec.failure:
-            journal.add(task, failed_trial(task, task.spec.failure, 0.0))
-    tasks = [task for task in tasks if not task.spec.failure]
     backend: Backend = InProcess() if workers == 0 else Processes(workers) if isinstance(workers, int) else workers
-    warm_up_limit_s = max(LEAST_WARM_UP_S, hang_limit_s)
-    job = Job(run_trial, hang_limit_s, warm_up_parts(tasks), warm_up_limit_s, memory_limit_mb)
     with progress(len(tasks)) as report, closing(backend.run(job, tasks, report.warm_up)) as finished:
         for task, result in finished:
             journal.add(task, result)

@@ -91,6 +91,23 @@ def test_the_page_knows_every_class_attribute() -> None:
     assert set(re.findall(r"^\| `(\w+)` \|", table, re.MULTILINE)) == declared
 
 
+def test_the_commands_of_the_papers_page_leave_the_files_it_names(folder: Path) -> None:
+    page = (ROOT / "docs" / "paper.md").read_text(encoding="utf-8")
+    (folder / "work" / "docs").symlink_to(ROOT / "docs")
+    blocks = blocks_of(page)
+    assert {block.language for block in blocks} == {"sh"}
+    assert page.count("```") == 2 * len(blocks)
+    for block in blocks:
+        small = re.sub(r"--trials \d+", "--trials 1 --obstacles 1 --workers 1", block.code).replace(
+            "docs/figures/depth.png", "depth.png"
+        )
+        run(folder, "bash", "-ec", small)
+        for out in re.findall(r"--out (results/[\w-]+)(?:$|\s)", block.code):
+            assert (folder / "work" / out / "table.md").is_file(), out
+    assert (folder / "work" / "depth.png").is_file()
+    assert "n = 1: ball 100.0 %, cube 100.0 %" in run(folder, "python", "docs/figures/arrival.py", "t3", "1", "1000")
+
+
 def test_every_block_of_the_python_page_runs(folder: Path) -> None:
     blocks = blocks_of(PYTHON_PAGE)
     assert {block.language for block in blocks} == {"python"}

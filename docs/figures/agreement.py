@@ -12,7 +12,7 @@ from pathlib import Path
 import pandas as pd
 from scipy.stats import binomtest, chi2
 
-PUBLISHED = Path(__file__).resolve().parents[2] / "results" / "published_table1.csv"
+PUBLISHED = Path(__file__).resolve().parents[2] / "suite" / "compare" / "published_table1.csv"
 
 
 def row_of(planner: str) -> str:

@@ -9,8 +9,8 @@ import sys
 
 import numpy as np
 
-from planners import parse_planner, warm_up
-from scenarios import ContinuumArm, generate
+from planners import parse_planner
+from scenarios import generate
 from scenarios.families.base import CUBE_M
 from suite.auditor.certificate import certified_contacts
 from suite.trial import episode
@@ -45,7 +45,6 @@ def succeeds(task: TrialTask, execution: type[Execution]) -> bool:
 def main(planner: str, trials: int, seed: int) -> None:
     """Print both shares for each number of obstacles."""
     spec = parse_planner(planner)
-    warm_up([spec], ContinuumArm())
     for n in (1, 3, 5, 6):
         tasks = [TrialTask(scenario, spec, "cubic", False, seed) for scenario in generate("orbit", n, trials, seed)]
         ball, cube = (

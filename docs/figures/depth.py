@@ -22,8 +22,10 @@ def draw(cubic: Path, truth: Path, figure: Path) -> None:
     runs = {"cubic prediction": cubic, "the future known": truth}
     trials = {name: pd.read_csv(run / "trials.csv") for name, run in runs.items()}
     counts = sorted(trials["cubic prediction"]["n_obstacles"].unique())
-    _, axes = plt.subplots(1, len(counts), figsize=(3 * len(counts), 3), sharey=True, constrained_layout=True)
-    for axis, n in zip(axes, counts, strict=True):
+    _, axes = plt.subplots(
+        1, len(counts), figsize=(3 * len(counts), 3), sharey=True, squeeze=False, constrained_layout=True
+    )
+    for axis, n in zip(axes[0], counts, strict=True):
         for name, style in (("cubic prediction", "o-"), ("the future known", "s--")):
             of_n = trials[name][trials[name]["n_obstacles"] == n]
             groups = sorted((depth(planner), rows["success_swept"]) for planner, rows in of_n.groupby("planner"))
@@ -35,8 +37,8 @@ def draw(cubic: Path, truth: Path, figure: Path) -> None:
             above = [100 * b.high - rate for rate, b in zip(rates, bounds, strict=True)]
             axis.errorbar(depths, rates, yerr=[below, above], fmt=style, capsize=3, label=name)
         axis.set(title=f"{n} obstacles", xlabel="depth h [steps]")
-    axes[0].set(ylabel="success, swept [%]", ylim=(0, 102))
-    axes[0].legend(loc="lower left")
+    axes[0, 0].set(ylabel="success, swept [%]", ylim=(0, 102))
+    axes[0, 0].legend(loc="lower left")
     plt.savefig(figure, dpi=110)
 
 

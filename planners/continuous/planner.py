@@ -20,6 +20,8 @@ RATE_RESERVE = 0.01
 """Share of the arm's rates held back: the tip's speed within a step is known from three instants."""
 GOAL_SHARE = 0.9
 """Share of the goal tolerance at which the tip is to arrive."""
+LAST_RATE_RESERVE, LAST_GOAL_SHARE = 0.0005, 0.999
+"""The same for ``clairvoyant`` where they may decide whether a scenario is possible; what then goes too fast fails."""
 MARGIN_M = 5e-5
 """Clearance kept beyond the validator's: obstacles go straight between samples here, not in truth."""
 PRESSING_S = 60.0
@@ -70,7 +72,12 @@ class ClairvoyantSettings(SearchSettings):
     refinements: int = Field(default=400, ge=0, le=10**7, description="branches after the goal was first reached")
     enough: float = Field(default=1.0, ge=1, description="no refining below this multiple of the straight way's time")
     bounces: int = Field(default=5, ge=0, le=1000, description="new postures a blocked branch tries")
-    restarts: int = Field(default=20, ge=1, le=10**6, description="searches made until one reaches the goal")
+    restarts: int = Field(
+        default=20,
+        ge=1,
+        le=10**6,
+        description="searches made until one reaches the goal, twice: at last as fast as the arm may go",
+    )
 
 
 class Found(NamedTuple):
@@ -98,7 +105,7 @@ class TreePlanner(ReplanningPlanner):
         """Plan on ``problem``; random numbers derive from OMPL's seed."""
         super().__init__(problem, settings)
         arm = problem.query.arm
-        self._settings, self._body = settings, body_of(arm, RATE_RESERVE)
+        self._settings, self._body, self._goal_share = settings, body_of(arm, RATE_RESERVE), GOAL_SHARE
         self._workspace = Workspace.of(arm, settings.nodes)
         self._rng = np.array([ou.RNG().uniformInt(0, 2**31 - 1)], np.uint64)
 
@@ -112,7 +119,7 @@ class TreePlanner(ReplanningPlanner):
     def grow_tree(self, world: SampledWorld, branches: int) -> Found:
         """Search on from the tree as it stands, all of which is free of the obstacles of ``world``."""
         query, settings, space = self.problem.query, self._settings, self._workspace
-        tree, stop_m = space.tree, GOAL_SHARE * query.goal_tolerance_m
+        tree, stop_m = space.tree, self._goal_share * query.goal_tolerance_m
         budget = _kernels.Budget(
             branches, settings.refinements, settings.bounces, settings.enough, settings.step_s, MARGIN_M
         )
@@ -232,9 +239,11 @@ class ClairvoyantPlanner(TreePlanner):
         """The first path to the goal; else the one that stays safe longest."""
         here, world = TimedPath(np.array([now_s]), q[None]), self.problem.query.world
         found: Found | None = None
-        for _ in range(self._restarts):
+        for restart in range(2 * self._restarts):
             if found is not None and (found.reaches or stop()):
                 break
+            if restart == self._restarts:
+                self._body, self._goal_share = body_of(self.problem.query.arm, LAST_RATE_RESERVE), LAST_GOAL_SHARE
             self.plant_tree(here, world)
             tried = self.grow_tree(world, self._branches)
             if found is None or tried.reaches or tried.path.times_s[-1] > found.path.times_s[-1]:

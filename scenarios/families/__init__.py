@@ -4,6 +4,7 @@ A new family is one subclass of ``Family`` and one line in ``FAMILIES``.
 """
 
 import hashlib
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -49,6 +50,11 @@ def generate(family: str, n_obstacles: int, trials: int, seed: int, arm: Continu
         SpecError: Unknown family or setting.
         ScenarioError: Numbers out of range, or settings from which no scenario can be drawn.
     """
+    return list(drawn(family, n_obstacles, trials, seed, arm))
+
+
+def drawn(family: str, n_obstacles: int, trials: int, seed: int, arm: ContinuumArm | None = None) -> Iterator[Scenario]:
+    """What ``generate`` returns, one after the other: nobody needs to hold them all."""
     name, settings = parse_family(family)
     if not 0 <= n_obstacles <= 1000:
         raise ScenarioError(f"obstacles: found {n_obstacles}, allowed 0 to 1000")
@@ -56,7 +62,8 @@ def generate(family: str, n_obstacles: int, trials: int, seed: int, arm: Continu
         raise ScenarioError(f"trials: found {trials}, allowed 1 to 100000")
     if not 0 <= seed < 2**63:
         raise ScenarioError(f"seed: found {seed}, allowed 0 to 2^63 - 1")
-    return [_draw(name, settings, n_obstacles, k, seed, arm or ContinuumArm()) for k in range(trials)]
+    for k in range(trials):
+        yield _draw(name, settings, n_obstacles, k, seed, arm or ContinuumArm())
 
 
 def _draw(name: str, settings: Family, n_obstacles: int, k: int, seed: int, arm: ContinuumArm) -> Scenario:

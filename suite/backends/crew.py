@@ -11,11 +11,12 @@ from dataclasses import replace
 from multiprocessing.connection import wait
 
 from planners.failure import Failure
-from suite.backends.agenda import HOUSE, Agenda
+from suite.backends.agenda import HOUSE, Agenda, owner_of
 from suite.backends.job import Job, OnWarmUp, Part
 from suite.backends.local import in_warm_up, run_task, warm_up, within
 from suite.backends.process import LOOK_EVERY_S, PENDING, Bloated, Dead, Garbled, Late, WorkerProcess
 from suite.backends.worker import Unreadable
+from suite.trial.lineup import Tasks
 from suite.trial.task import RowError, TrialResult, TrialTask, checked_result, failed_trial
 
 STARTS = 3
@@ -45,7 +46,7 @@ class Crew:
         started: Sequence[WorkerProcess],
         workers: int,
         job: Job,
-        tasks: Sequence[TrialTask],
+        tasks: Tasks,
         on_warm_up: OnWarmUp | None,
     ) -> None:
         """Begin with the processes that were ``started``."""
@@ -95,11 +96,11 @@ class Crew:
             self._crew.append(_Worker(WorkerProcess()))
 
     def _warm_up(self, worker: _Worker, part: Part) -> None:
-        worker.part, worker.owner = part, worker.owner or self._agenda.owner(part.planner)
+        worker.part, worker.owner = part, worker.owner or part.owner
         worker.process.ask(warm_up, part, limit_s=self._job.warm_up_limit_s)
 
     def _run(self, worker: _Worker, task: TrialTask) -> None:
-        worker.owner = self._agenda.owner(task.spec.label)
+        worker.owner = worker.owner or owner_of(task)
         limit_s, limit_mb = self._job.hang_limit_s, self._job.memory_limit_mb
         worker.process.ask(run_task, self._bare_job, task, limit_s=limit_s, memory_limit_mb=limit_mb)
 
@@ -109,6 +110,8 @@ class Crew:
 
     def _due(self) -> list[_Worker]:
         """Wait until a worker has something to say or is late; return those, none if the warm-up takes its time."""
+        if not any(worker.process.is_asked for worker in self._crew):
+            return []
         patience_s = min(worker.process.patience_s for worker in self._crew)
         if self._agenda.begun:
             patience_s = min(patience_s, TELL_EVERY_S)

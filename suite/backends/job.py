@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
+    from suite.trial.lineup import Tasks
     from suite.trial.task import TrialResult, TrialTask
 
 LEAST_WARM_UP_S = 120.0
@@ -27,6 +28,13 @@ class Part:
     """Label of the planner whose trials alone need it and fail with it; None for what every trial needs."""
     is_shared: bool = True
     """Whether every process needs it before its first trial, else only the first to compile what other parts load."""
+    is_outside: bool = False
+    """Whether it is of a planner from outside, whose process is for nobody else."""
+
+    @property
+    def owner(self) -> str:
+        """That planner's label, or empty."""
+        return self.planner or "" if self.is_outside else ""
 
 
 @dataclass(frozen=True)
@@ -58,9 +66,10 @@ class Backend(Protocol):
     """Where trials run."""
 
     def run(
-        self, job: Job, tasks: Sequence[TrialTask], on_warm_up: OnWarmUp | None = None
+        self, job: Job, tasks: Tasks, on_warm_up: OnWarmUp | None = None
     ) -> Generator[tuple[TrialTask, TrialResult], None, None]:
         """Run every task and yield each with its result as it finishes; closing the iterator early ends all work.
 
-        What a planner does wrong, in a trial or in its warm-up, is in the results of its tasks.
+        Tasks are taken one by one, as work is handed out. What a planner does wrong, in a trial or in its warm-up, is
+        in the results of its tasks.
         """

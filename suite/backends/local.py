@@ -5,10 +5,11 @@ from __future__ import annotations
 import copy
 import gc
 import time
-from collections.abc import Generator, Sequence
+from collections.abc import Generator
 
 from planners.failure import Failure, failure_of
 from suite.backends.job import Job, OnWarmUp, Part
+from suite.trial.lineup import Tasks
 from suite.trial.task import RowError, TrialResult, TrialTask, checked_result, failed_trial
 
 MANY_OBJECTS = 300_000
@@ -22,11 +23,14 @@ class InProcess:
     """
 
     def run(
-        self, job: Job, tasks: Sequence[TrialTask], on_warm_up: OnWarmUp | None = None
+        self, job: Job, tasks: Tasks, on_warm_up: OnWarmUp | None = None
     ) -> Generator[tuple[TrialTask, TrialResult], None, None]:
         """See ``Backend.run``."""
         failures: dict[str, Failure | None] = {}
         for task in tasks:
+            if task.spec.failure:
+                yield task, failed_trial(task, task.spec.failure, 0.0)
+                continue
             for part in job.needed_by(task):
                 if part.name not in failures:
                     if on_warm_up is not None:

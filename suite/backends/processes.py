@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
+from collections.abc import Generator
 from types import TracebackType
 from typing import TYPE_CHECKING, Self
 
@@ -10,6 +10,7 @@ from suite.backends.process import WorkerProcess
 
 if TYPE_CHECKING:
     from suite.backends.job import Job, OnWarmUp
+    from suite.trial.lineup import Tasks
     from suite.trial.task import TrialResult, TrialTask
 
 
@@ -36,7 +37,7 @@ class Processes:
             self._started.pop().kill()
 
     def run(
-        self, job: Job, tasks: Sequence[TrialTask], on_warm_up: OnWarmUp | None = None
+        self, job: Job, tasks: Tasks, on_warm_up: OnWarmUp | None = None
     ) -> Generator[tuple[TrialTask, TrialResult], None, None]:
         """See ``Backend.run``."""
         from suite.backends.crew import Crew

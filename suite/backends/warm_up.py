@@ -8,6 +8,7 @@ from functools import partial
 from planners import PlannerSpec
 from planners.first_use import predictor_parts, warm_up_planner, warm_up_predictor, warm_up_problem
 from scenarios import ContinuumArm, Scenario, start_is_free
+from scenarios.proofs import prove
 from suite.auditor import audit, collides
 from suite.backends.job import Part
 from suite.trial.task import TrialTask
@@ -34,11 +35,22 @@ def warm_up_parts(tasks: Iterable[TrialTask]) -> list[Part]:
         Part("audit", partial(_warm_up_audit, list(examples.values())), TYPICAL_HOUSE_S),
         Part("collision checks", partial(_for_each, warm_up_problem, arms), TYPICAL_HOUSE_S),
         *(
+            [Part("proofs", partial(_for_each_example, prove, list(examples.values())), TYPICAL_HOUSE_S)]
+            if any(spec.is_bound for spec, _ in planners.values())
+            else []
+        ),
+        *(
             Part(f"predictor {name}", partial(warm_up_predictor, name, arms[0]), typical_s, is_shared=False)
             for typical_s, name in sorted(((TYPICAL_S.get(name, 1.0), name) for name in predictors), reverse=True)
         ),
         *(
-            Part(label, partial(_for_each, partial(warm_up_planner, *planner), arms), TYPICAL_PLANNER_S, planner=label)
+            Part(
+                label,
+                partial(_for_each, partial(warm_up_planner, *planner), arms),
+                TYPICAL_PLANNER_S,
+                planner=label,
+                is_outside=bool(planner[0].code),
+            )
             for label, planner in planners.items()
         ),
     ]
@@ -49,6 +61,11 @@ def _warm_up_audit(examples: Iterable[Scenario]) -> None:
         start_is_free(scenario)
         audit(scenario, [0.0, 1.0], [scenario.start, scenario.start])
         collides(scenario, scenario.start, 0.0)
+
+
+def _for_each_example(warm_up: Callable[[Scenario], object], examples: Iterable[Scenario]) -> None:
+    for scenario in examples:
+        warm_up(scenario)
 
 
 def _for_each(warm_up: Callable[[ContinuumArm], None], arms: Iterable[ContinuumArm]) -> None:

@@ -18,6 +18,7 @@ from typer.exceptions import TyperException
 from suite.cli.audit import audit
 from suite.cli.check import check
 from suite.cli.check_planner import check_planner
+from suite.cli.compare import compare
 from suite.cli.generate import generate
 from suite.cli.new_planner import new_planner
 from suite.cli.options import EXIT_INTERRUPTED, EXIT_USAGE, say
@@ -32,15 +33,16 @@ app = typer.Typer(
     rich_markup_mode=None,  # rich help would double the time of --help
     pretty_exceptions_enable=False,
 )
-for verb in (run, table, generate, planners, new_planner, check_planner, predictors, check, audit, version):
+for verb in (run, table, compare, generate, planners, new_planner, check_planner, predictors, check, audit, version):
     app.command()(verb)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code.
 
-    0 is done, 1 what was looked for was found (a violation under ``audit --strict``, a check that failed), 2 a usage or
-    input error, or a disk that takes no more, 3 nothing to compare, 130 interrupted with everything finished saved.
+    0 is done, 1 what was looked for was found (a regression, a violation under ``audit --strict``, a check that
+    failed), 2 a usage or input error, or a disk that takes no more, 3 nothing to compare, 4 inconclusive under
+    ``compare --strict``, 130 interrupted with everything finished saved.
     """
     for asked in (signal.SIGINT, signal.SIGTERM):
         signal.signal(asked, _interrupt)

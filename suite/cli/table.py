@@ -25,13 +25,13 @@ def table(
     """Print the comparison of a run, finished or not."""
     from suite.compare.pairs import compare_in_pairs
     from suite.compare.published import beside, published_file, read_published
-    from suite.compare.tables import summarize
+    from suite.compare.tables import SUMMED_UP, summarize
     from suite.show import text
     from suite.show.conditions import sentence
     from suite.show.terminal import print_summary
     from suite.store.run_folder import planner_order, present_codes, read_manifest, read_table, read_trials
 
-    trials = read_trials(run)
+    trials = read_trials(run) if reference is not None else read_trials(run, SUMMED_UP)
     if trials is not None and trials.empty:
         say(f"{run}: no trial has finished yet")
         raise typer.Exit(EXIT_NOTHING)

@@ -5,7 +5,8 @@ can only be said of motions that reached the goal; those columns are medians ove
 Trials under unlike conditions are never summed up together.
 
 A bound (a planner that knows the true motion) shows what is possible. It stands below the others, and every success is
-also given as a share of its own, over the scenarios that both were tried on.
+also given as a share of its own, over the scenarios that both were tried on. Beside it stands how many of a planner's
+scenarios are possible: solved by somebody, or at most those that are not proven impossible.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import pandas as pd
 
 from planners import is_bound
 from suite.auditor.verdicts import VERDICTS
+from suite.compare.possible import IMPOSSIBLE, OPEN, YES, possible
 from suite.compare.statistics import wilson_interval
 from suite.store.frames import TABLE_TYPES
 from suite.trial.columns import OWN, WORLD
@@ -31,6 +33,25 @@ WORLDS = ["family", "n_obstacles", *(column.name for column in WORLD)]
 ENTRANT = ["planner", *(column.name for column in OWN)]
 """What one row of a table is about, in its world."""
 
+SUMMED_UP = (
+    *WORLDS,
+    *ENTRANT,
+    "scenario_id",
+    "scenario_hash",
+    "house_code",
+    "planner_code",
+    "is_bound",
+    "outcome",
+    *(f"success_{verdict}" for verdict in VERDICTS),
+    "impossible_reason",
+    "planning_time_s",
+    "solve_p50_s",
+    "arrival_time_s",
+    "tip_path_length_m",
+    "smoothness_paper_rad",
+)
+"""Columns of trials that a table is made from."""
+
 
 def summarize(
     trials: pd.DataFrame, planners: Sequence[str] = (), present: Mapping[str, Code] | None = None
@@ -44,10 +65,18 @@ def summarize(
     """
     order = {label: position for position, label in enumerate(planners)}
     rows: list[dict[str, Any]] = []
+    answers = possible(trials)
     for world, among in trials.groupby(WORLDS, sort=False, dropna=False):
         bounds = among[are_bounds(among)]
         for entrant, group in among.groupby(ENTRANT, sort=False, dropna=False):
             named = dict(zip(WORLDS + ENTRANT, (*world, *entrant), strict=True))
+            counts = answers[group["scenario_hash"].unique()].value_counts()
+            known = {
+                "possible": counts.get(YES, 0),
+                "open": counts.get(OPEN, 0),
+                "impossible": counts.get(IMPOSSIBLE, 0),
+            }
+            named |= {f"scenarios_{name}": count for name, count in known.items()}
             rows.append(named | _summary(group, bounds) | {"stale": _stale(group, present or {})})
     summary = pd.DataFrame(rows)[list(TABLE_TYPES)].astype(TABLE_TYPES)
     position = summary["planner"].map(lambda label: order.get(label, len(order)))

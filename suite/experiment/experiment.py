@@ -12,7 +12,7 @@ from typing import Annotated, Any
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from planners import PREDICTORS, PlannerSpec, describe, label_of
-from scenarios import ContinuumArm, Scenario, generate, load_scenarios
+from scenarios import ContinuumArm, PackedScenarios, Scenario, drawn, load_scenarios
 from scenarios.families import parse_family
 from scenarios.reading import read_json
 from scenarios.spec import known_name
@@ -86,7 +86,7 @@ class Experiment(BaseModel):
         with ThreadPoolExecutor(8) as pool:  # each planner from outside is looked at by a process of its own
             return list(pool.map(describe, self.planners))
 
-    def scenarios(self) -> list[Scenario]:
+    def scenarios(self) -> PackedScenarios:
         """Load or generate the scenarios, in a fixed order.
 
         Raises:
@@ -94,13 +94,13 @@ class Experiment(BaseModel):
             SuiteError: Two scenarios are the same, or there are too many trials.
         """
         if self.scenario_files:
-            scenarios = [scenario for file in self.scenario_files for scenario in load_scenarios(file)]
-            _refuse_twins(scenarios)
+            loaded = (scenario for file in self.scenario_files for scenario in load_scenarios(file))
+            scenarios = PackedScenarios(_each_once(loaded))
             self._refuse_too_many(len(scenarios))
             return scenarios
         self._refuse_too_many(len(self.obstacles) * self.trials)  # before they are generated
         arm = ContinuumArm.from_text(self.arm)
-        return [s for n in self.obstacles for s in generate(self.family, n, self.trials, self.seed, arm)]
+        return PackedScenarios(s for n in self.obstacles for s in drawn(self.family, n, self.trials, self.seed, arm))
 
     def _refuse_too_many(self, n_scenarios: int) -> None:
         n_trials = n_scenarios * len(self.planners)
@@ -129,6 +129,14 @@ class Experiment(BaseModel):
         """Which code runs each planner, by label."""
         ours = house_code(house())
         return {spec.label: Code(ours, spec.code or ours) for spec in self.specs()}
+
+    def fingerprint(self) -> str:
+        """16 hexadecimal digits of all that decides which rows are asked for, scenario files and code included."""
+        digest = hashlib.sha256(json.dumps([self.model_dump(mode="json"), self.codes()]).encode())
+        for file in map(Path, self.scenario_files):
+            if file.is_file():  # reading it as scenarios will say what is wrong with another
+                digest.update(file.read_bytes())
+        return digest.hexdigest()[:16]
 
     @property
     def name(self) -> str:
@@ -188,11 +196,19 @@ def _refuse_repeats(field: str, values: Iterable[object]) -> None:
         raise SuiteError(f"{field}: found {value} {times} times, allowed once")
 
 
-def _refuse_twins(scenarios: list[Scenario]) -> None:
-    """A trial is known by its scenario's content, and its seed and row by the scenario's name."""
+def _each_once(scenarios: Iterable[Scenario]) -> Iterator[Scenario]:
+    """Refuse twins: a trial is known by its scenario's content, and its seed and row by the scenario's name.
+
+    Raises:
+        SuiteError: A content or a name is there twice.
+    """
     by_hash: dict[str, str] = {}
+    names = set[str]()
     for scenario in scenarios:
         twin = by_hash.setdefault(scenario.content_hash, scenario.id)
         if twin != scenario.id:
             raise SuiteError(f"scenario files: found {scenario.id}, the same problem as {twin}, allowed once")
-    _refuse_repeats("scenario files", [scenario.id for scenario in scenarios])
+        if scenario.id in names:
+            raise SuiteError(f"scenario files: found {scenario.id} 2 times, allowed once")
+        names.add(scenario.id)
+        yield scenario

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
 import platform
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from scenarios.scenario import Scenario
+from scenarios import PackedScenarios
 from suite.experiment.code import house, house_code
 from suite.experiment.experiment import Experiment
 from suite.trial.columns import SCHEMA_VERSION
@@ -18,14 +16,13 @@ from suite.trial.columns import SCHEMA_VERSION
 Manifest = dict[str, Any]
 
 
-def make_manifest(experiment: Experiment, scenarios: Sequence[Scenario]) -> Manifest:
+def make_manifest(experiment: Experiment, scenarios: PackedScenarios) -> Manifest:
     """Describe what the latest command runs: experiment, scenarios, sources, versions, code and machine."""
-    hashes = "".join(scenario.content_hash for scenario in scenarios)
     ours, codes = house(), experiment.codes()
     return {
         "schema_version": SCHEMA_VERSION,
         "experiment": experiment.model_dump(mode="json"),
-        "scenarios": {"count": len(scenarios), "hash": hashlib.sha256(hashes.encode()).hexdigest()[:16]},
+        "scenarios": {"count": len(scenarios), "hash": scenarios.digest},
         **ours,
         "code": {
             "house": house_code(ours),

@@ -4,26 +4,27 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TextIO
 
 import numpy as np
 import pandas as pd
 
-from scenarios import Scenario
-from suite.compare.tables import summarize
+from scenarios import PackedScenarios
+from suite.compare.tables import SUMMED_UP, summarize
 from suite.files import replacing, write_text
 from suite.show.text import as_csv, as_markdown_page
-from suite.store.frames import FLOAT_FORMAT, trials_csv, trials_frame
+from suite.store.frames import FLOAT_FORMAT, columns_frame, joined, trials_csv
 from suite.store.journal import Executed, Journal
+from suite.trial.columns import COLUMN_NAMES
 from suite.trial.task import Code
 
 
 def write_derived(
-    folder: Path, journal: Journal, scenarios: Sequence[Scenario], present: Mapping[str, Code]
+    folder: Path, journal: Journal, scenarios: PackedScenarios, present: Mapping[str, Code]
 ) -> pd.DataFrame:
-    """Write trials, tables, scenarios and trajectories.
+    """Write trials, tables, scenarios and trajectories; none of the large ones is ever held as a whole.
 
     Args:
         folder: The run's folder.
@@ -34,15 +35,16 @@ def write_derived(
     Returns:
         The summary that stands in ``table.csv``.
     """
-    trials = trials_frame(journal.rows())
-    summary = summarize(trials, list(present), present)
-    write_text(folder / "trials.csv", trials_csv(trials))
+    summary = summarize(joined(map(columns_frame, journal.columns(SUMMED_UP)), SUMMED_UP), list(present), present)
+    with replacing(folder / "trials.csv") as handle:
+        handle.write(",".join(COLUMN_NAMES) + "\n")
+        handle.writelines(trials_csv(columns_frame(columns), header=False) for columns in journal.columns())
     write_text(folder / "table.csv", as_csv(summary))
     write_text(folder / "table.md", as_markdown_page(folder.name, summary))
     with replacing(folder / "scenarios.jsonl") as handle:
-        handle.writelines(f"{scenario.model_dump_json()}\n" for scenario in scenarios)
+        handle.writelines(scenarios.lines())
     with replacing(folder / "trajectories.csv") as handle:
-        _write_trajectories(handle, journal.executed(), n_sections=max(s.arm.n_sections for s in scenarios))
+        _write_trajectories(handle, journal.executed(), n_sections=max(arm.n_sections for arm in scenarios.arms))
     return summary
 
 

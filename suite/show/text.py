@@ -20,11 +20,12 @@ Format = Literal["markdown", "csv", "latex"]
 NOTES = """\
 Success in percent of all trials with its 95 % Wilson interval; each verdict is stricter than the one before: per step
 (no collision at whole seconds), swept (at no instant: the paper's protocol, beside which published numbers stand),
-executable (swept, within bending rate and tip speed). A bound knows the true motion and is not compared; "of bound"
-gives successes in percent of its, one verdict after another. Planning time is the sum over a trial's solves: mean /
-median over all trials. Solve is the median of the trials' median solves. Arrival, tip path and smoothness S are medians
-over the trials that reached the goal. Errors are trials in which the planner failed as a program: it raised, crashed or
-hung. Stale trials were run by other code than the present."""
+executable (swept, within bending rate and tip speed). A bound knows the true motion and is not compared. "Of
+possible": executable successes, of as many scenarios as somebody solved so, to as many as are not proven impossible;
+"of bound", in older tables, successes in percent of a bound's, one verdict after another. Planning time is the sum
+over a trial's solves: mean / median over all trials. Solve is the median of the trials' median solves. Arrival, tip
+path and smoothness S are medians over the trials that reached the goal. Errors are trials in which the planner failed
+as a program: it raised, crashed or hung. Stale trials were run by other code than the present."""
 
 
 class Shown(NamedTuple):
@@ -43,6 +44,7 @@ def as_csv(frame: pd.DataFrame) -> str:
 def shown_columns(summary: pd.DataFrame) -> list[Shown]:
     """The columns that people see of a summary; those that say nothing are left out."""
     published = "published_success_percent" in summary
+    has_bound, is_known = summary["is_bound"].any(), summary["scenarios_possible"].notna().any()
     varied = varying(summary)
     columns = [
         Shown("family", lambda row: str(row.family)) if len(set(summary["family"])) > 1 else None,
@@ -58,7 +60,8 @@ def shown_columns(summary: pd.DataFrame) -> list[Shown]:
         Shown("published %", lambda row: _number(row.published_success_percent)) if published else None,
         Shown("swept %", _success("swept")),
         Shown("executable %", _success("executable")),
-        Shown("of bound %", _shares) if summary["is_bound"].any() else None,
+        Shown("of possible", _of_possible) if has_bound and is_known else None,
+        Shown("of bound %", _shares) if has_bound and not is_known else None,
         Shown("planning s", _planning),
         Shown("published s", lambda row: _number(row.published_time_s)) if published else None,
         Shown("solve ms", lambda row: _number(1e3 * row.solve_median_s)),
@@ -123,6 +126,14 @@ def _success(verdict: str) -> Callable[[Any], str]:
 def _shares(row: Any) -> str:
     shares = [getattr(row, f"success_{verdict}_of_bound_percent") for verdict in VERDICTS]
     return "-" if pd.isna(shares).all() else " / ".join("-" if pd.isna(share) else f"{share:.0f}" for share in shares)
+
+
+def _of_possible(row: Any) -> str:
+    if pd.isna(row.success_executable_percent) or pd.isna(row.scenarios_possible):
+        return "-"
+    successes = round(row.success_executable_percent * row.trials / 100)
+    to = f" to {row.scenarios_possible + row.scenarios_open}" if row.scenarios_open else ""
+    return f"{successes} of {row.scenarios_possible}{to}"
 
 
 def _planning(row: Any) -> str:

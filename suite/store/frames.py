@@ -6,8 +6,9 @@ import csv
 import io
 import sys
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
@@ -17,24 +18,24 @@ from scenarios.reading import first_twice, read_text, unreadable
 from suite.auditor.verdicts import VERDICTS
 from suite.errors import SuiteError
 from suite.store.schema import old_margin
-from suite.trial.columns import COLUMN_NAMES, COLUMNS, CONDITIONS, Column, Row
+from suite.trial.columns import COLUMN_NAMES, COLUMNS, CONDITIONS, SORTED_BY, Row
 
 MAX_CSV_BYTES = 1024**3
 
-SORTED_BY = ["family", "n_obstacles", "scenario_id", "planner", *(column.name for column in CONDITIONS)]
-"""The order of rows in files, which does not depend on the order in which trials finished."""
-
-_NEW_IN_TABLES = {column.name: column.dtype for column in CONDITIONS} | {"stale": "int64"}
+_POSSIBLE = {f"scenarios_{answer}": "Int64" for answer in ("possible", "open", "impossible")}
+_NEW_IN_TABLES = {column.name: column.dtype for column in CONDITIONS} | {"stale": "int64"} | _POSSIBLE
 
 TABLE_TYPES: dict[str, str] = {
     "family": "string",
     "n_obstacles": "int64",
     "planner": "string",
-    **_NEW_IN_TABLES,
+    **{column.name: column.dtype for column in CONDITIONS},
+    "stale": "int64",
     "is_bound": "bool",
     "trials": "int64",
     **{f"success_{verdict}_{part}": "float64" for verdict in VERDICTS for part in ("percent", "low", "high")},
     **{f"success_{verdict}_of_bound_percent": "float64" for verdict in VERDICTS},
+    **_POSSIBLE,
     "planning_time_mean_s": "float64",
     "planning_time_median_s": "float64",
     "solve_median_s": "float64",
@@ -46,6 +47,8 @@ TABLE_TYPES: dict[str, str] = {
 }
 """Columns of ``table.csv`` and their types."""
 
+_DTYPES = {column.name: column.dtype for column in COLUMNS}
+
 FLOAT_FORMAT = "%.9g"
 """How every number is written, so that equal rows give equal bytes."""
 
@@ -55,24 +58,33 @@ def trials_frame(rows: Iterable[Row]) -> pd.DataFrame:
 
     Numbers are rounded as they are written: what is computed from the frame can be computed from ``trials.csv``.
     """
-    # Column by column: a list of rows as dictionaries would take several times the frame's memory.
-    values: dict[str, list[object]] = {name: [] for name in COLUMN_NAMES}
+    values: dict[str, list[Any]] = {name: [] for name in COLUMN_NAMES}
     for row in rows:
         for name, value in row.items():
-            values[name].append(_as_written(value))
-    frame = pd.DataFrame({column.name: pd.Series(values.pop(column.name), dtype=column.dtype) for column in COLUMNS})
-    return frame.sort_values(SORTED_BY, ignore_index=True)
+            values[name].append(value)
+    return columns_frame(values).sort_values(list(SORTED_BY), ignore_index=True)
 
 
-def _as_written(value: object) -> object:
-    if isinstance(value, float):
-        return float(FLOAT_FORMAT % value)
-    return sys.intern(value) if isinstance(value, str) else value  # names and settings repeat in thousands of rows
+def columns_frame(columns: Mapping[str, Sequence[Any]]) -> pd.DataFrame:
+    """The same of rows that come as columns, in the order in which they come."""
+    return pd.DataFrame({name: pd.Series(_as_written(columns[name]), dtype=_DTYPES[name]) for name in columns})
 
 
-def trials_csv(trials: pd.DataFrame) -> str:
-    """The text of ``trials.csv``."""
-    return trials.to_csv(index=False, float_format=FLOAT_FORMAT, lineterminator="\n")
+def joined(frames: Iterable[pd.DataFrame], names: Sequence[str]) -> pd.DataFrame:
+    """Frames with the columns ``names``, one below the other; there may be none."""
+    return pd.concat([columns_frame(dict.fromkeys(names, ())), *frames], ignore_index=True)
+
+
+def _as_written(values: Iterable[Any]) -> list[Any]:
+    """Numbers rounded; names and settings, which repeat in thousands of rows, each held once."""
+    return [
+        float(FLOAT_FORMAT % v) if isinstance(v, float) else sys.intern(v) if isinstance(v, str) else v for v in values
+    ]
+
+
+def trials_csv(trials: pd.DataFrame, *, header: bool = True) -> str:
+    """The text of ``trials.csv``, or of some of its lines."""
+    return trials.to_csv(index=False, header=header, float_format=FLOAT_FORMAT, lineterminator="\n")
 
 
 def read_trials_csv(file: Path) -> pd.DataFrame:
@@ -83,12 +95,12 @@ def read_trials_csv(file: Path) -> pd.DataFrame:
         SuiteError: A column is missing.
     """
     frame = read_columns(file, {column.name: column.dtype for column in COLUMNS})
-    is_old = not any(column.since > 1 and column.name in frame for column in COLUMNS)
-    missing = [column.name for column in COLUMNS if column.name not in frame and not (is_old and column.since > 1)]
+    version = max((column.since for column in COLUMNS if column.name in frame), default=1)
+    missing = [column.name for column in COLUMNS if column.name not in frame and column.since <= version]
     if missing:
         raise SuiteError(f"{file}: found no column {missing[0]}, a table of trials has one")
-    if is_old:
-        frame = _with_unknown(frame, [column for column in COLUMNS if column.since > 1])
+    frame = _with_unknown(frame, {column.name: column.dtype for column in COLUMNS if column.since > version})
+    if version == 1:
         planner = frame["planner"].fillna("")
         frame = frame.assign(
             prediction_margin=planner.map(old_margin).astype("float64"),
@@ -108,13 +120,16 @@ def read_table_csv(file: Path) -> pd.DataFrame:
     missing = [name for name in TABLE_TYPES if name not in frame and name not in _NEW_IN_TABLES]
     if missing:
         raise SuiteError(f"{file}: found no column {missing[0]}, a table has one")
-    return _with_unknown(frame if "stale" in frame else frame.assign(stale=0), CONDITIONS)
+    types = {column.name: column.dtype for column in CONDITIONS} | _POSSIBLE
+    frame = _with_unknown(frame if "stale" in frame else frame.assign(stale=0), types)
+    return frame[[*TABLE_TYPES, *(name for name in frame if name not in TABLE_TYPES)]]
 
 
-def _with_unknown(frame: pd.DataFrame, columns: Iterable[Column]) -> pd.DataFrame:
-    """Add, empty, those of the columns that are not there."""
+def _with_unknown(frame: pd.DataFrame, types: Mapping[str, str]) -> pd.DataFrame:
+    """Add, empty, those of the columns, given with their types, that are not there."""
     empty = [None] * len(frame)
-    return frame.assign(**{c.name: pd.Series(empty, frame.index, c.dtype) for c in columns if c.name not in frame})
+    lacking = {name: dtype for name, dtype in types.items() if name not in frame}
+    return frame.assign(**{name: pd.Series(empty, frame.index, dtype) for name, dtype in lacking.items()})
 
 
 def read_columns(file: Path, types: Mapping[str, str]) -> pd.DataFrame:
@@ -147,6 +162,6 @@ def refuse_gaps(trials: pd.DataFrame, file: Path) -> pd.DataFrame:
         SuiteError: Scenario, planner or outcome is missing somewhere.
     """
     for name in ("scenario_id", "scenario_hash", "family", "n_obstacles", "planner", "outcome"):
-        if trials[name].isna().any():
+        if name in trials and trials[name].isna().any():
             raise SuiteError(f"{file}: found a trial without {name}, allowed: every trial has one")
     return trials

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from scenarios import ContinuumArm
 from suite.trial.task import Code, TrialTask
 
 
@@ -17,6 +18,10 @@ class Standing:
     """By the trials' keys, in the order asked for: the code whose row stands, or will stand, for each."""
     there: int = 0
     """Trials that have such a row."""
+    left: list[int] = field(default_factory=list)
+    """The others, by their places in the order asked for."""
+    examples: dict[tuple[str, ContinuumArm], TrialTask] = field(default_factory=dict)
+    """One of those for every planner and arm among them: what a warm-up has to know."""
     stale: Counter[str] = field(default_factory=Counter)
     """Trials by planner whose rows are of other code of that planner: they run again."""
     kept: int = 0
@@ -47,7 +52,7 @@ def settle(tasks: Iterable[TrialTask], made: Mapping[str, Sequence[Code]], *, ke
         keep_stale: Whether a row of other code will do where there is none of the present.
     """
     standing = Standing()
-    for task in tasks:
+    for place, task in enumerate(tasks):
         codes = made.get(task.key, ())
         code = task.code
         if code in codes:
@@ -61,6 +66,9 @@ def settle(tasks: Iterable[TrialTask], made: Mapping[str, Sequence[Code]], *, ke
         elif codes:
             standing.other_houses[codes[-1].house] += 1
         standing.chosen[task.key] = code
+        if code not in codes:
+            standing.left.append(place)
+            standing.examples.setdefault((task.spec.label, task.scenario.arm), task)
     return standing
 
 

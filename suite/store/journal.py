@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import hashlib
 import io
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,10 +16,13 @@ from numpy.typing import NDArray
 from suite.errors import SuiteError
 from suite.experiment.code import House, is_house
 from suite.store.schema import open_to_read, open_to_write, remember_house, transaction
-from suite.trial.columns import COLUMN_NAMES, COLUMNS, Row, complete_row
+from suite.trial.columns import COLUMN_NAMES, COLUMNS, SORTED_BY, Row, complete_row, plain_values
 from suite.trial.task import Code, TrialResult, TrialTask
 
 _NAMES = ", ".join(f'"{name}"' for name in COLUMN_NAMES)
+_SORTED = ", ".join(f'"{name}" NULLS LAST' for name in SORTED_BY)
+CHUNK = 2_000
+"""Rows that are read together."""
 
 
 class Executed(NamedTuple):
@@ -80,16 +84,25 @@ class Journal:
     def complete(self, tasks: Iterable[TrialTask]) -> None:
         """Fill in what rows of the first version do not say of their scenarios, as far as these are known by now."""
         lacking = {key for (key,) in self._db.execute("SELECT key FROM trials WHERE arm IS NULL")}
-        known = [(task.identity["arm"], task.identity["family_parameters"], task.key) for task in tasks if lacking]
+        if not lacking:
+            return
+        known = ((task.identity["arm"], task.identity["family_parameters"], task.key) for task in tasks)
         with transaction(self._db):
             self._db.executemany(
                 "UPDATE trials SET arm = ?, family_parameters = ? WHERE key = ? AND arm IS NULL",
-                [values for values in known if values[-1] in lacking],
+                (values for values in known if values[-1] in lacking),
             )
 
     def finished(self) -> set[str]:
         """Keys of the trials that are asked for and need not run again."""
         return {key for (key,) in self._db.execute("SELECT key FROM shown")}
+
+    def shown_digest(self) -> str:
+        """16 hexadecimal digits of which rows are asked for and there; a row never changes."""
+        digest = hashlib.sha256()
+        for number, key in self._db.execute("SELECT number, key FROM shown ORDER BY number"):
+            digest.update(f"{number} {key}\n".encode())
+        return digest.hexdigest()[:16]
 
     def add(self, task: TrialTask, result: TrialResult) -> None:
         """Store one finished trial.
@@ -118,16 +131,33 @@ class Journal:
             except (ValueError, TypeError) as error:
                 raise SuiteError(f"{self._file}: found a row with a value that fits no trial: {error}") from None
 
+    def columns(self, names: Sequence[str] = COLUMN_NAMES) -> Iterator[dict[str, list[Any]]]:
+        """The rows that are asked for, sorted, some thousands at a time: the values of each column in ``names``.
+
+        Raises:
+            SuiteError: A value is not of its column's type.
+        """
+        selected = self._db.execute(f"SELECT {', '.join(names)} FROM shown ORDER BY {_SORTED}")
+        while rows := selected.fetchmany(CHUNK):
+            try:
+                yield {
+                    name: plain_values(name, values)
+                    for name, values in zip(names, zip(*rows, strict=True), strict=True)
+                }
+            except (ValueError, TypeError) as error:
+                raise SuiteError(f"{self._file}: found a row with a value that fits no trial: {error}"[:300]) from None
+
     def executed(self) -> Iterator[Executed]:
         """What was executed in the trials that are asked for, sorted as in the tables.
 
         Raises:
             SuiteError: What is stored is no trajectory.
         """
-        selected = self._db.execute(
-            "SELECT scenario_id, planner, executed FROM shown ORDER BY family, n_obstacles, scenario_id, planner, key"
-        )
-        for scenario_id, planner, blob in selected:
+        # Sorted by number first: trajectories, sorted as they are, would go through gigabytes of temporary files.
+        numbers = self._db.execute(f"SELECT number FROM shown ORDER BY {_SORTED}").fetchall()
+        for number in numbers:
+            one = self._db.execute("SELECT scenario_id, planner, executed FROM trials WHERE number = ?", number)
+            scenario_id, planner, blob = one.fetchone()
             try:
                 timed = np.load(io.BytesIO(blob), allow_pickle=False)
                 yield Executed(scenario_id, planner, timed[:, 0], timed[:, 1:])

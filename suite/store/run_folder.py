@@ -16,12 +16,14 @@ from suite.experiment.code import House, changes, is_house
 from suite.experiment.experiment import MAX_MANIFEST_BYTES
 from suite.experiment.manifest import Manifest
 from suite.files import write_text
-from suite.store.frames import read_table_csv, read_trials_csv, refuse_gaps, trials_frame
+from suite.store.frames import columns_frame, joined, read_table_csv, read_trials_csv, refuse_gaps
 from suite.store.growth import Standing, settle
 from suite.store.journal import Journal
 from suite.store.schema import is_journal
 from suite.store.volume import held
-from suite.trial.task import Code, TrialTask
+from suite.trial.columns import COLUMN_NAMES
+from suite.trial.lineup import Tasks
+from suite.trial.task import Code
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -30,6 +32,7 @@ MANIFEST = "manifest.json"
 JOURNAL = "run.db"
 TRIALS = "trials.csv"
 TABLE = "table.csv"
+STAMP = ".finished.json"
 DERIVED = (TRIALS, TABLE, "table.md", "scenarios.jsonl", "trajectories.csv")
 
 
@@ -63,8 +66,20 @@ def present_codes(manifest: Manifest | None) -> dict[str, Code]:
     return {label: Code(str(code.get("house")), str(planner)) for label, planner in code["planners"].items()}
 
 
-def read_trials(folder: Path) -> pd.DataFrame | None:
+def house_changes(base: Path, new: Path) -> list[str]:
+    """What has changed in the suite and its libraries from one run to another, as far as their manifests say."""
+    houses = [read_manifest(folder) or {} for folder in (base, new)]
+    if not all(isinstance(house.get("versions"), dict) and "sources" in house for house in houses):
+        return []
+    return [f"the suite: {change}" for change in changes(*houses)]
+
+
+def read_trials(folder: Path, names: Sequence[str] = COLUMN_NAMES) -> pd.DataFrame | None:
     """The trials so far: from the journal, or from ``trials.csv`` where only that was kept; None without either.
+
+    Args:
+        folder: The run's.
+        names: Columns that are wanted; of a large run a few are read in a fraction of the time.
 
     Raises:
         SuiteError: They cannot be read.
@@ -72,7 +87,7 @@ def read_trials(folder: Path) -> pd.DataFrame | None:
     if (folder / JOURNAL).exists():
         try:
             with Journal(folder / JOURNAL, read_only=True, old_house=_old_house(folder)) as journal:
-                return refuse_gaps(trials_frame(journal.rows()), folder / JOURNAL)
+                return refuse_gaps(joined(map(columns_frame, journal.columns(names)), names), folder / JOURNAL)
         except (OSError, sqlite3.Error) as error:
             raise SuiteError(f"{folder / JOURNAL}: cannot be read: {error}{_damaged(error)}") from None
     return refuse_gaps(read_trials_csv(folder / TRIALS), folder / TRIALS) if (folder / TRIALS).exists() else None
@@ -91,14 +106,14 @@ def read_table(folder: Path) -> pd.DataFrame:
 
 @contextmanager
 def open_run(
-    folder: Path, manifest: Manifest, tasks: Sequence[TrialTask], *, fresh: bool = False, keep_stale: bool = False
+    folder: Path, manifest: Manifest, tasks: Tasks, *, fresh: bool = False, keep_stale: bool = False
 ) -> Iterator[tuple[Journal, Standing]]:
     """Start or continue a run, and keep other processes out of it meanwhile.
 
     Args:
         folder: Made if need be.
         manifest: What is about to run.
-        tasks: Its trials.
+        tasks: Its trials; passed through once, or twice where rows of the first version lack something.
         fresh: Forget what earlier commands have left there.
         keep_stale: Use rows that other code has made where there are none of the present code.
 
@@ -135,9 +150,7 @@ def _damaged(error: Exception) -> str:
     return f"; the last {TRIALS} may still be whole, and --fresh starts over" if is_damaged else ""
 
 
-def _standing(
-    folder: Path, old_house: House | None, house: House, tasks: Sequence[TrialTask], *, keep_stale: bool
-) -> Standing:
+def _standing(folder: Path, old_house: House | None, house: House, tasks: Tasks, *, keep_stale: bool) -> Standing:
     """How far the run is; rows of another house are for the user to decide about."""
     if not (folder / JOURNAL).exists():
         return settle(tasks, {}, keep_stale=keep_stale)
@@ -147,8 +160,8 @@ def _standing(
             theirs = journal.houses().get(standing.other_houses.most_common(1)[0][0])
             what = "; ".join(changes(theirs, house)[:3]) if theirs else "nothing says which"
             raise SuiteError(
-                f"{folder}: {standing.other_houses.total()} of {len(tasks)} trials were run by another version of the"
-                f" suite ({what}); start over with --fresh, or use them as they are with --keep-stale"
+                f"{folder}: {standing.other_houses.total()} of {len(standing.chosen)} trials were run by another"
+                f" version of the suite ({what}); start over with --fresh, or use them as they are with --keep-stale"
             )
     return standing
 
@@ -163,7 +176,7 @@ def _old_house(folder: Path) -> House | None:
 def _forget(folder: Path, manifest: Manifest) -> None:
     """Delete what a run has left; the folder is that of a run at any instant, so that this may be cut short."""
     _write_manifest(folder, manifest)
-    for name in (*DERIVED, JOURNAL, f"{JOURNAL}-wal", f"{JOURNAL}-shm"):
+    for name in (STAMP, *DERIVED, JOURNAL, f"{JOURNAL}-wal", f"{JOURNAL}-shm"):
         (folder / name).unlink(missing_ok=True)
 
 

@@ -30,6 +30,7 @@ _MARGIN_ONE = {"rrt", "rrtconnect", "strrt", "prm", "temporal-ct"}
 
 # A row stays where it is for good; what the latest command asks for, and which code's row stands for it, is `asked`.
 _COLUMNS = ", ".join(f'"{column.name}" {_SQL_TYPES[column.dtype]}' for column in COLUMNS)
+_SHOWN = "CREATE VIEW shown AS SELECT trials.* FROM asked JOIN trials USING (key, house_code, planner_code)"
 _TABLES = (
     f"""CREATE TABLE trials (
         number INTEGER PRIMARY KEY, key TEXT NOT NULL, {_COLUMNS}, executed BLOB NOT NULL, traceback TEXT NOT NULL,
@@ -38,7 +39,7 @@ _TABLES = (
         position INTEGER PRIMARY KEY, key TEXT NOT NULL UNIQUE,
         house_code TEXT NOT NULL, planner_code TEXT NOT NULL)""",
     "CREATE TABLE houses (house_code TEXT PRIMARY KEY, description TEXT NOT NULL)",
-    "CREATE VIEW shown AS SELECT trials.* FROM asked JOIN trials USING (key, house_code, planner_code)",
+    _SHOWN,
 )
 
 
@@ -60,13 +61,16 @@ def open_to_read(file: Path, old_house: House | None = None) -> sqlite3.Connecti
         if version == 0:
             for table in _TABLES:
                 db.execute(table.replace("CREATE", "CREATE TEMP"))
-        elif version == 1:
+        elif version < SCHEMA_VERSION:
             # Under the names of the present tables, which hide the one that is there.
             _define_functions(db)
-            db.execute(f"CREATE TEMP VIEW trials AS SELECT {_as_present(old_house)} FROM main.trials")
-            db.execute("CREATE TEMP VIEW shown AS SELECT * FROM trials")
-            db.execute("CREATE TEMP TABLE houses (house_code TEXT, description TEXT)")
-            remember_house(db, old_house)
+            db.execute(f"CREATE TEMP VIEW trials AS SELECT {_as_present(version, old_house)} FROM main.trials")
+            if version == 1:
+                db.execute("CREATE TEMP VIEW shown AS SELECT * FROM trials")
+                db.execute("CREATE TEMP TABLE houses (house_code TEXT, description TEXT)")
+                remember_house(db, old_house)
+            else:
+                db.execute(_SHOWN.replace("CREATE", "CREATE TEMP"))
     except BaseException:
         db.close()
         raise
@@ -104,12 +108,15 @@ def open_to_write(file: Path, old_house: House | None = None) -> sqlite3.Connect
         with transaction(db):
             if version == 1:
                 db.execute("ALTER TABLE trials RENAME TO old")
-            for table in _TABLES:
+            for table in _TABLES if version < 2 else ():
                 db.execute(table)
+            for column in COLUMNS if version >= 2 else ():
+                if column.since > version:
+                    db.execute(f'ALTER TABLE trials ADD COLUMN "{column.name}" {_SQL_TYPES[column.dtype]}')
             if version == 1:
                 _define_functions(db)
                 names = ", ".join(f'"{name}"' for name in ("number", "key", *COLUMN_NAMES, "executed", "traceback"))
-                db.execute(f"INSERT INTO trials ({names}) SELECT {_as_present(old_house)} FROM old")
+                db.execute(f"INSERT INTO trials ({names}) SELECT {_as_present(1, old_house)} FROM old")
                 db.execute("DROP TABLE old")
                 remember_house(db, old_house)
             db.execute(f"PRAGMA application_id = {APPLICATION_ID}")
@@ -168,8 +175,8 @@ def _version(file: Path, db: sqlite3.Connection) -> int:
     if application == APPLICATION_ID and version > SCHEMA_VERSION:
         raise SuiteError(f"{file}: found a journal of version {version}, allowed up to {SCHEMA_VERSION}: update suite")
     names = {name for _, name, *_ in db.execute("PRAGMA table_info(trials)")}
-    if application == APPLICATION_ID and version == SCHEMA_VERSION and set(COLUMN_NAMES) < names:
-        return SCHEMA_VERSION
+    if application == APPLICATION_ID and version >= 2 and {c.name for c in COLUMNS if c.since <= version} < names:
+        return int(version)
     if application == version == 0:
         if names == _OLD_NAMES:
             return 1
@@ -189,8 +196,11 @@ def _define_functions(db: sqlite3.Connection) -> None:
     db.create_function("old_is_bound", 1, is_bound, deterministic=True)
 
 
-def _as_present(old_house: House | None) -> str:
-    """What to select from a table of the first version to get rows of the present one."""
+def _as_present(version: int, old_house: House | None) -> str:
+    """What to select from a table of an earlier version to get rows of the present one."""
+    if version > 1:
+        known = (f'"{c.name}"' if c.since <= version else f'NULL AS "{c.name}"' for c in COLUMNS)
+        return ", ".join(["number", "key", *known, "executed", "traceback"])
     code = f"'{UNKNOWN if old_house is None else house_code(old_house)}'"
     made: Mapping[str, str] = {
         "house_code": code,

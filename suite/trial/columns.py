@@ -10,7 +10,7 @@ from __future__ import annotations
 import hashlib
 import json
 import reprlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Literal, NamedTuple
 
 from suite.auditor.verdicts import VERDICTS
@@ -21,7 +21,7 @@ DType = Literal["string", "boolean", "Int64", "float64"]
 LONGEST_TEXT = 1000
 """Characters of a text that was measured."""
 
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 3
 """Version of the columns below; what an older version lacks is None when its rows are read."""
 
 OUTCOMES = (
@@ -65,6 +65,9 @@ OWN = (
 
 CONDITIONS = WORLD + OWN
 """What keeps rows of one planner apart in every table."""
+
+SORTED_BY = ("family", "n_obstacles", "scenario_id", "planner", *(column.name for column in CONDITIONS))
+"""The order of rows in files, which does not depend on the order in which trials finished."""
 
 IDENTITY = (
     Column("scenario_id", "string", "", "name of the scenario"),
@@ -110,6 +113,8 @@ MEASURED = (
     Column("min_clearance_m", "float64", "m", "smallest clearance to a true obstacle, negative in contact"),
     Column("state_checks", "Int64", "", "states checked for validity while planning"),
     Column("motion_checks", "Int64", "", "motions checked for validity while planning"),
+    Column("impossible_reason", "string", "", "why nobody can solve the scenario, where a bound failed", since=3),
+    Column("impossible_from_s", "float64", "s", "from when on nobody can arrive, where that is why", since=3),
     Column("message", "string", "", "what went wrong, when something did"),
     Column("audit_time_s", "float64", "s", "wall time of the audit", is_timing=True),
     Column("trial_wall_s", "float64", "s", "wall time of the whole trial", is_timing=True),
@@ -172,6 +177,16 @@ def _is_storable(value: Any) -> bool:
     except UnicodeEncodeError:
         return False
     return True
+
+
+def plain_values(name: str, values: Iterable[Any]) -> list[Any]:
+    """Values of the column ``name`` as ``complete_row`` makes them, many rows at once.
+
+    Raises:
+        ValueError, TypeError: A value is not of the column's type.
+    """
+    kind = _PLAIN_TYPES[_DTYPES[name]]
+    return [None if value is None or value != value else kind(value) for value in values]
 
 
 def trial_key(row: Mapping[str, Any]) -> str:

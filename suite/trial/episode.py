@@ -14,6 +14,7 @@ from scenarios import start_is_free
 from suite.auditor import Audit, audit, collides
 from suite.auditor.verdicts import contact_columns
 from suite.trial.execution import Execution, PathError, check_path
+from suite.trial.impossibility import impossibility
 from suite.trial.metrics import smoothness_bending_rad, smoothness_paper_rad, tip_path_length_m
 from suite.trial.observation import Observer
 from suite.trial.task import TrialResult, TrialTask, failed_trial, trial_row
@@ -57,6 +58,7 @@ def run_trial(task: TrialTask) -> TrialResult:
         "message": message,
         **_judgement(judged),
         **_solving(solves),
+        **(impossibility(scenario) if task.spec.is_bound and not judged.executable.success else {}),
         "tip_path_length_m": tip_path_length_m(scenario.arm, execution.configurations_rad),
         "smoothness_paper_rad": smoothness_paper_rad(execution.configurations_rad),
         "smoothness_bending_rad": smoothness_bending_rad(execution.configurations_rad),

@@ -1,6 +1,10 @@
+from dataclasses import replace
+
+import pytest
 from fakes import behave, make_parts, make_tasks
 
 from planners.failure import Failure
+from suite.backends import agenda as agendas
 from suite.backends.agenda import TRIES, Agenda
 from suite.backends.job import Job
 
@@ -59,3 +63,35 @@ def test_giving_up_takes_waiting_tasks_too() -> None:
         agenda.give_up_one(FAILURE)
     assert agenda.n_open == 0
     assert [result.row["message"] for _, result in agenda.results()] == [FAILURE.message] * 2
+
+
+def test_tasks_are_taken_as_they_are_needed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(agendas, "LOOK_AHEAD", 3)
+    taken: list[str] = []
+
+    class Counted(list):
+        def __iter__(self):
+            for task in super().__iter__():
+                taken.append(task.spec.label)
+                yield task
+
+    agenda = Agenda(Job(behave, 60.0, make_parts({"a": ""})), Counted(make_tasks(["a", "b"], trials=10)))
+    part = agenda.next_part()
+    assert labels(agenda) == ["b", "b"]  # three of a wait by now
+    assert len(taken) == 5
+    assert part is not None
+    agenda.is_warm(part)
+    assert sorted(labels(agenda)) == ["a"] * 10 + ["b"] * 8
+    assert len(taken) == 20
+
+
+def test_failures_are_stored_before_there_are_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(agendas, "LOOK_AHEAD", 3)
+    tasks = make_tasks(["a"], trials=10)
+    broken = [replace(task, spec=task.spec._replace(failure=FAILURE)) for task in tasks]
+    agenda = Agenda(Job(behave, 60.0), broken)
+    counts = []
+    while agenda.n_open:
+        assert agenda.next_task() is None
+        counts.append([result.row["message"] for _, result in agenda.results()])
+    assert counts == [[FAILURE.message] * 3] * 3 + [[FAILURE.message]]

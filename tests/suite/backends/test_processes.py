@@ -2,13 +2,15 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 import pytest
 from fakes import behave, heavy_imports, make_parts, make_tasks, place_of, warm, warm_after_a_death
 
-from suite.backends import process
+from planners.failure import Failure
+from suite.backends import agenda, process
 from suite.backends.job import Job, Part
 from suite.backends.processes import Processes
 from suite.trial.columns import TIMING_NAMES, Row
@@ -152,6 +154,14 @@ def test_what_cannot_be_sent_to_a_worker_is_a_row() -> None:
     found = {task.spec.label: result.row for task, result in Processes(1).run(Job(behave, 60.0), tasks)}
     assert "cannot be sent to a worker process" in found["local"]["message"]
     assert found["fine"]["message"] is None
+
+
+def test_planners_that_cannot_be_imported_all_fail_with_nothing_else_to_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(agenda, "LOOK_AHEAD", 3)
+    failure = Failure("planner_error", "in import: no")
+    tasks = [replace(task, spec=task.spec._replace(failure=failure)) for task in make_tasks(["a"], trials=8)]
+    results = [result.row["message"] for _, result in Processes(1).run(Job(behave, 60.0), tasks)]
+    assert results == ["in import: no"] * 8
 
 
 def test_no_tasks_need_no_workers() -> None:

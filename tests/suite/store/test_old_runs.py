@@ -18,6 +18,7 @@ from suite.experiment.code import versions
 from suite.store import schema
 from suite.store.frames import read_table_csv, read_trials_csv
 from suite.store.run_folder import read_manifest, read_trials
+from suite.trial.columns import TIMING_NAMES
 
 RESULTS = Path(__file__).parents[3] / "results"
 
@@ -121,6 +122,33 @@ def test_an_update_that_fails_leaves_the_old_journal(old_run) -> None:
     assert run_with_fakes(old_run) == []
 
 
+@pytest.fixture
+def run_of_two(tmp_path) -> Path:
+    """A run of fakes as the second version would have left it: before rows said what is impossible."""
+    folder = tmp_path / "two"
+    run_with_fakes(folder)
+    later = ("impossible_reason", "impossible_from_s")
+    dropped = [f'ALTER TABLE trials DROP COLUMN "{name}"' for name in later]
+    change(folder / "run.db", "DROP VIEW shown", *dropped, schema._SHOWN, "PRAGMA user_version = 2")
+    trials = pd.read_csv(folder / "trials.csv").drop(columns=list(later))
+    trials.to_csv(folder / "trials.csv", index=False)
+    (folder / ".finished.json").unlink()
+    return folder
+
+
+def test_a_run_of_the_second_version_is_read_unchanged_and_goes_on(run_of_two, tmp_path) -> None:
+    before = snapshot(run_of_two)
+    run_with_fakes(tmp_path / "new")
+    new = read_trials(tmp_path / "new").drop(columns=list(TIMING_NAMES))
+    for old in (read_trials(run_of_two), read_trials_csv(run_of_two / "trials.csv")):
+        pd.testing.assert_frame_equal(old.drop(columns=list(TIMING_NAMES)), new)
+    assert snapshot(run_of_two) == before
+    assert run_with_fakes(run_of_two) == []
+    assert run_with_fakes(run_of_two, trials=5) == ["pf"] * 2 + ["rrt"] * 2
+    run_with_fakes(tmp_path / "new", trials=5)
+    assert contents(run_of_two) == contents(tmp_path / "new")
+
+
 def change(file: Path, *statements: str) -> None:
     with sqlite3.connect(file) as db:
         for statement in statements:
@@ -131,8 +159,8 @@ def change(file: Path, *statements: str) -> None:
 @pytest.mark.parametrize(
     ("statements", "line"),
     [
-        (["PRAGMA user_version = 3"], "found a journal of version 3, allowed up to 2: update suite"),
-        (["PRAGMA application_id = 7"], "found no journal of a run in it, allowed one of version 1 to 2"),
+        (["PRAGMA user_version = 4"], "found a journal of version 4, allowed up to 3: update suite"),
+        (["PRAGMA application_id = 7"], "found no journal of a run in it, allowed one of version 1 to 3"),
         (["DROP VIEW shown", "ALTER TABLE trials RENAME TO essays"], "found no journal of a run in it"),
         (["DROP VIEW shown", "ALTER TABLE trials DROP COLUMN outcome"], "found no journal of a run in it"),
     ],
