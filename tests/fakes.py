@@ -63,6 +63,11 @@ def _channels() -> list[int]:
 def _mischief(task: TrialTask) -> None:  # noqa: C901  a case is a trick
     """Do to this process what the planner's label says."""
     match task.spec.label:
+        case "die twice":
+            with Path(os.environ["DEATHS"]).open("a") as file:
+                file.write("x")
+            if len(Path(os.environ["DEATHS"]).read_text()) <= 2:
+                os.kill(os.getpid(), signal.SIGKILL)
         case "garbage":
             for channel in _channels():
                 os.write(channel, b"\0\0\0\4abcd" * 9)
