@@ -28,8 +28,7 @@ def load_scenarios(path: str | os.PathLike[str]) -> list[Scenario]:
         ScenarioError: A field is wrong; the message names file, field, what was found and what is allowed.
     """
     file = Path(path)
-    content = parse(file, _suffix(file), read_text(file, MAX_FILE_BYTES))
-    entries = content if isinstance(content, list) else [content]
+    entries = read_entries(file)
     if not 1 <= len(entries) <= MAX_SCENARIOS:
         raise ScenarioError(f"{file}: found {len(entries)} scenarios, allowed 1 to {MAX_SCENARIOS}")
     count = len(entries)
@@ -65,6 +64,17 @@ def _suffix(file: Path) -> str:
     if file.suffix.lower() not in SUFFIXES:
         raise ScenarioError(f"{file}: found suffix {file.suffix!r}, allowed {', '.join(SUFFIXES)}")
     return file.suffix.lower()
+
+
+def read_entries(file: Path) -> list[Any]:
+    """What a file holds as plain Python values, in a list: of one, or of those that the file lists.
+
+    Raises:
+        FileError: The file cannot be read, is too large, or is not valid YAML or JSON.
+        ScenarioError: Its suffix is unknown.
+    """
+    content = parse(file, _suffix(file), read_text(file, MAX_FILE_BYTES))
+    return content if isinstance(content, list) else [content]
 
 
 def _validate(file: Path, index: int, count: int, entry: Any) -> Scenario:

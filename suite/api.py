@@ -23,12 +23,16 @@ from suite.auditor import Audit
 from suite.auditor import audit as judge
 from suite.auditor.certificate import certified_contacts
 from suite.auditor.fcl_engine import sampled_contacts
+from suite.backends.job import Limits
+from suite.compare.conditions import telling_apart
 from suite.compare.gate import Bar, Comparison, compare_runs
 from suite.compare.possible import scenarios_frame
 from suite.compare.tables import summarize
 from suite.errors import SuiteError
-from suite.experiment.experiment import make_experiment, preset_fields
-from suite.runner import DEFAULT_HANG_LIMIT_S, run_experiment
+from suite.experiment.experiment import make_experiment
+from suite.experiment.file import preset_fields
+from suite.merger import merge_runs
+from suite.runner import run_experiment
 from suite.show.text import cells
 from suite.store.journal import Executed, Journal
 from suite.store.run_folder import (
@@ -89,21 +93,31 @@ class Run:
         found = compare_runs(self.trials, new.trials, Bar(**bar))
         return replace(found, differing=(*found.differing, *house_changes(self.folder, new.folder)))
 
-    def trajectory(self, scenario: str, planner: str) -> Executed:
+    def trajectory(self, scenario: str, planner: str, **conditions: Any) -> Executed:
         """What a planner executed in a scenario: times (k,) [s] and configurations (k, dof) [rad].
 
         Args:
             scenario: Its id.
             planner: Its label, as in the table.
+            **conditions: Columns of the trial and their values, such as ``noise_mm=2.0``, where it ran under several.
 
         Raises:
-            SuiteError: There is no such trial.
+            SuiteError: There is no such trial, or more than one.
         """
         with Journal(self.folder / JOURNAL, read_only=True) as journal:
-            for executed in journal.executed():
-                if (executed.scenario_id, executed.planner) == (scenario, planner):
-                    return executed
-        raise SuiteError(f"{self.folder}: found no trial of {planner!r} on {scenario!r}")
+            found = [
+                executed
+                for executed in journal.executed()
+                if (executed.scenario_id, executed.planner) == (scenario, planner)
+                and all(executed.conditions.get(name) == value for name, value in conditions.items())
+            ]
+        if len(found) == 1:
+            return found[0]
+        what = f"{planner!r} on {scenario!r}" + "".join(f", {name}={value!r}" for name, value in conditions.items())
+        if not found:
+            raise SuiteError(f"{self.folder}: found no trial of {what}")
+        names = ", ".join(telling_apart(self.trials))
+        raise SuiteError(f"{self.folder}: found {len(found)} trials of {what}, allowed one: say which by {names}")
 
     def scenario(self, scenario: str) -> Scenario:
         """A scenario of the run by its id.
@@ -133,7 +147,8 @@ def run(
     out: str | Path | None = None,
     preset: str | None = None,
     processes: int = 0,
-    hang_limit_s: float = DEFAULT_HANG_LIMIT_S,
+    hang_limit_s: float = 300.0,
+    memory_limit_mb: float | None = None,
     fresh: bool = False,
     keep_stale: bool = False,
     **conditions: Any,
@@ -143,14 +158,17 @@ def run(
     Args:
         planners: Specs (``"temporal,rrt"``) and classes; may be empty where a preset names some.
         out: Folder of the run; ``results/NAME`` when None.
-        preset: Name of a preset, or the ``manifest.json`` of a run, whose fields are taken unless given here.
+        preset: Name of a preset, an experiment file, or the ``manifest.json`` of a run, whose fields are taken unless
+            given here.
         processes: Worker processes; 0 runs every trial in this process, where a planner that hangs or crashes
             can't be stopped.
         hang_limit_s: In worker processes a trial that takes longer is killed [s].
+        memory_limit_mb: There a trial that takes more memory is killed [MB]; Linux alone tells how much it takes.
         fresh: Start over what the folder holds.
         keep_stale: Use rows that other code has made as they are.
         **conditions: Fields of ``suite.experiment.experiment.Experiment``: ``family``, ``arm``, ``obstacles``,
-            ``trials``, ``seed``, ``predictor``, ``margin``, ``limits``, ``noise_mm``, ``dropout``, ``scenario_files``.
+            ``trials``, ``seed``, ``predictor``, ``margin``, ``limits``, ``noise_mm``, ``dropout``, ``scenario_files``;
+            all but ``trials`` and the files may have several values, of which every combination is run.
 
     Raises:
         SuiteError, SpecError, ScenarioError: Something asked for is not allowed; one line.
@@ -160,7 +178,14 @@ def run(
     given = conditions | ({"planners": texts} if texts else {})
     experiment = make_experiment(**(preset_fields(preset) if preset else {}) | given)
     folder = Path(out) if out is not None else Path("results") / experiment.name
-    run_experiment(experiment, folder, workers=processes, hang_limit_s=hang_limit_s, fresh=fresh, keep_stale=keep_stale)
+    run_experiment(
+        experiment,
+        folder,
+        workers=processes,
+        limits=Limits(hang_limit_s, memory_limit_mb),
+        fresh=fresh,
+        keep_stale=keep_stale,
+    )
     return Run(folder)
 
 
@@ -171,6 +196,21 @@ def load(folder: str | Path) -> Run:
         SuiteError: There is none, or it cannot be read.
     """
     return Run(folder)
+
+
+def merge(runs: Iterable[str | Path], out: str | Path, *, keep_first: bool = False) -> Run:
+    """Put several runs together in a folder of their own, as ``suite merge`` does; they themselves are only read.
+
+    Args:
+        runs: Their folders.
+        out: A new or an empty folder.
+        keep_first: Where two have different rows for one trial by the same code, let that of the first stand.
+
+    Raises:
+        SuiteError: A run cannot be read, two are in conflict, or ``out`` holds something. Then nothing is written.
+    """
+    merge_runs([Path(run) for run in runs], Path(out), keep_first=keep_first)
+    return Run(out)
 
 
 class Conditions(TypedDict, total=False):

@@ -16,5 +16,5 @@ def one_line(error: ValidationError) -> str:
     finding = error.errors(include_url=False)[0]
     if finding["type"] == "value_error":  # raised by a validator of ours, whose message is already whole
         return str(finding["ctx"]["error"])
-    field = ".".join(str(part) for part in finding["loc"])
+    field = ".".join(part for part in finding["loc"] if isinstance(part, str))  # the value tells which of a list it is
     return f"{field}: found {finding['input']!r}, allowed: {finding['msg']}"

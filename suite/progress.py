@@ -47,8 +47,11 @@ class Reporter(Protocol):
 
 
 @contextmanager
-def progress(total: int) -> Iterator[Reporter]:
-    """Show progress towards ``total`` trials while the block runs."""
+def progress(total: int, *, quiet: bool = False) -> Iterator[Reporter]:
+    """Show progress towards ``total`` trials while the block runs, unless it is to be ``quiet``."""
+    if quiet:
+        yield _Silence()
+        return
     if not sys.stderr.isatty():
         yield _Lines(total)
         return
@@ -105,6 +108,16 @@ class Compilation:
             return f"warming up: {', '.join(names)}; {late_s:.0f} s so far, longer than usual: it may hang"
         others = f" and {len(waiting)} more" if waiting else ""
         return f"compiling, once: {', '.join(names)}{others}; about {left_s / len(running):.0f} s to go"
+
+
+class _Silence:
+    """No progress."""
+
+    def __call__(self, label: str) -> None:
+        pass
+
+    def warm_up(self, running: Collection[Warming], waiting: Collection[Warming]) -> None:
+        pass
 
 
 class _Bar:

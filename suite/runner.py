@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from planners import check_fit
-from suite.backends.job import LEAST_WARM_UP_S, Backend, Job
+from suite.backends.job import LEAST_WARM_UP_S, Backend, Job, Limits
 from suite.backends.local import InProcess
 from suite.backends.processes import Processes
 from suite.backends.warm_up import warm_up_parts
@@ -28,7 +28,7 @@ from suite.trial.lineup import Lineup, Tasks
 if TYPE_CHECKING:
     import pandas as pd
 
-DEFAULT_HANG_LIMIT_S = 300.0
+USUAL_LIMITS = Limits()
 
 
 class RunInterrupted(Exception):
@@ -43,10 +43,10 @@ def run_experiment(
     folder: Path,
     *,
     workers: int | Processes,
-    hang_limit_s: float = DEFAULT_HANG_LIMIT_S,
-    memory_limit_mb: float | None = None,
+    limits: Limits = USUAL_LIMITS,
     fresh: bool = False,
     keep_stale: bool = False,
+    quiet: bool = False,
 ) -> pd.DataFrame:
     """Run what is left of an experiment and write its files.
 
@@ -55,12 +55,10 @@ def run_experiment(
         folder: Where the run lives; one that is there goes on, and grows by what is new.
         workers: Number of worker processes, or those that were started ahead; 0 runs the trials in this process, where
             nobody can kill a planner that hangs.
-        hang_limit_s: A trial that takes longer is killed and recorded as ``planner_hung`` [s]. So is a planner's
-            warm-up, which has two minutes at the least: it may have to compile.
-        memory_limit_mb: A trial that takes more than its process had before is killed and recorded as
-            ``planner_memory`` [MB]; no limit when None.
+        limits: What a trial may take in a worker process.
         fresh: Start over, whatever an earlier run has left in the folder.
         keep_stale: Use rows that other code has made as they are.
+        quiet: Say nothing on the way.
 
     Returns:
         The summary, one row per number of obstacles, conditions and planner.
@@ -75,19 +73,19 @@ def run_experiment(
     scenarios = experiment.scenarios()
     for arm in scenarios.arms:
         check_fit(experiment.specs(), arm)
-    tasks = Lineup(partial(experiment.tasks, scenarios), range(len(scenarios) * len(experiment.planners)))
+    tasks = Lineup(partial(experiment.tasks, scenarios), range(experiment.count(len(scenarios))))
     manifest = make_manifest(experiment, scenarios)
     with open_run(folder, manifest, tasks, fresh=fresh, keep_stale=keep_stale) as (journal, standing):
-        for line in standing.notes():
+        for line in [] if quiet else standing.notes():
             note(line)
         # Pandas takes as long to import as workers to load their kernels.
         threading.Thread(target=importlib.import_module, args=["suite.show.derived"], daemon=True).start()
         try:
             if standing.left:
                 parts = warm_up_parts(task for task in standing.examples.values() if not task.spec.failure)
-                warm_up_limit_s = max(LEAST_WARM_UP_S, hang_limit_s)
-                job = Job(run_trial, hang_limit_s, parts, warm_up_limit_s, memory_limit_mb)
-                _run(job, tasks.at(standing.left), journal, workers)
+                warm_up_limit_s = max(LEAST_WARM_UP_S, limits.hang_s)
+                job = Job(run_trial, limits.hang_s, parts, warm_up_limit_s, limits.memory_mb)
+                _run(job, tasks.at(standing.left), journal, workers, quiet=quiet)
             from suite.show.derived import write_derived
 
             summary = write_derived(folder, journal, scenarios, experiment.codes())
@@ -103,10 +101,10 @@ def run_experiment(
             ) from None
 
 
-def _run(job: Job, tasks: Tasks, journal: Journal, workers: int | Processes) -> None:
+def _run(job: Job, tasks: Tasks, journal: Journal, workers: int | Processes, *, quiet: bool) -> None:
     """Run every task and store each result as it comes."""
     backend: Backend = InProcess() if workers == 0 else Processes(workers) if isinstance(workers, int) else workers
-    with progress(len(tasks)) as report, closing(backend.run(job, tasks, report.warm_up)) as finished:
+    with progress(len(tasks), quiet=quiet) as report, closing(backend.run(job, tasks, report.warm_up)) as finished:
         for task, result in finished:
             journal.add(task, result)
             report(task.spec.label)

@@ -4,9 +4,11 @@ A new family is one subclass of ``Family`` and one line in ``FAMILIES``.
 """
 
 import hashlib
+import json
 from collections.abc import Iterator
 
 import numpy as np
+from pydantic import BaseModel
 
 from scenarios.arm import ContinuumArm
 from scenarios.collision import is_motion_valid
@@ -62,11 +64,21 @@ def drawn(family: str, n_obstacles: int, trials: int, seed: int, arm: ContinuumA
         raise ScenarioError(f"trials: found {trials}, allowed 1 to 100000")
     if not 0 <= seed < 2**63:
         raise ScenarioError(f"seed: found {seed}, allowed 0 to 2^63 - 1")
+    arm = arm or ContinuumArm()
+    end = _ending(settings, arm)
     for k in range(trials):
-        yield _draw(name, settings, n_obstacles, k, seed, arm or ContinuumArm())
+        yield _draw(name, settings, n_obstacles, k, seed, arm, end)
 
 
-def _draw(name: str, settings: Family, n_obstacles: int, k: int, seed: int, arm: ContinuumArm) -> Scenario:
+def _ending(*models: BaseModel) -> str:
+    """What tells scenarios of unlike settings apart by name: empty for the defaults, else a hash of what differs."""
+    changed = [model.model_dump(exclude_defaults=True) for model in models]
+    if not any(changed):
+        return ""
+    return f"-{hashlib.sha256(json.dumps(changed, sort_keys=True).encode()).hexdigest()[:8]}"
+
+
+def _draw(name: str, settings: Family, n_obstacles: int, k: int, seed: int, arm: ContinuumArm, end: str) -> Scenario:
     digest = hashlib.sha256(f"{name}/{n_obstacles}/{seed}/{k}".encode()).digest()
     rng = np.random.default_rng(int.from_bytes(digest[:8], "big"))
     for _ in range(1000):
@@ -75,7 +87,7 @@ def _draw(name: str, settings: Family, n_obstacles: int, k: int, seed: int, arm:
         except ValueError as error:
             raise ScenarioError(f"{name}: {error}") from None
         scenario = Scenario(
-            id=f"{name}-n{n_obstacles}-s{seed}-{k:04d}",
+            id=f"{name}-n{n_obstacles}-s{seed}-{k:04d}{end}",
             family=name,
             seed=seed,
             parameters={"n_obstacles": n_obstacles, **settings.model_dump()},

@@ -20,6 +20,8 @@ from suite.errors import SuiteError
 MAX_FILE_BYTES = 256 * 1024 * 1024
 MAX_SECTIONS = 12
 NAMES = ("scenario_id", "planner", "time_s")
+CONDITION = "condition"
+"""A column after the planner's, where one planner has met one scenario under several conditions."""
 
 
 class Trajectory(NamedTuple):
@@ -36,6 +38,8 @@ class Trajectory(NamedTuple):
 def read_trajectories(file: Path, scenarios: Sequence[Scenario]) -> list[Trajectory]:
     """Read a CSV with columns scenario_id, planner, time_s, u1_rad, v1_rad, ..., one line per timed state.
 
+    Where one planner met one scenario several times, a column ``condition`` after ``planner`` tells them apart.
+
     Lines of different trajectories may be mixed; within one their order is kept, whatever their times say. ``nan`` and
     ``inf`` are numbers here: judging them is the audit's business. Blank lines are passed over.
 
@@ -47,11 +51,15 @@ def read_trajectories(file: Path, scenarios: Sequence[Scenario]) -> list[Traject
     numbers: dict[tuple[str, str], array[float]] = {}
     reader = csv.reader(io.StringIO(read_text(file, MAX_FILE_BYTES), newline=""))
     try:
-        header = _checked_header(file, next(reader, []))
+        first = next(reader, [])
+        has_condition = first[2:3] == [CONDITION]
+        header = _checked_header(file, first[:2] + first[3:] if has_condition else first)
         for cells in reader:
             if not any(map(str.strip, cells)):
                 continue
             where = f"{file}: line {reader.line_num}"
+            if has_condition and len(cells) > 2:
+                cells[1:3] = [f"{cells[1]} {cells[2]}".strip()]
             scenario = _scenario(where, header, cells, known)
             state = _numbers(where, header[2:], cells[2:], 1 + scenario.arm.dof)
             so_far = numbers.setdefault((scenario.id, cells[1]), array("d"))

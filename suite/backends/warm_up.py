@@ -25,12 +25,12 @@ def warm_up_parts(tasks: Iterable[TrialTask]) -> list[Part]:
     First what every trial needs, then the predictors in use, each to be compiled once for all planners, then planners.
     """
     examples: dict[ContinuumArm, Scenario] = {}
-    planners: dict[str, tuple[PlannerSpec, str]] = {}
+    planners: dict[str, tuple[PlannerSpec, set[str]]] = {}
     for task in tasks:
         examples.setdefault(task.scenario.arm, task.scenario)
-        planners.setdefault(task.spec.label, (task.spec, task.predictor))
+        planners.setdefault(task.spec.label, (task.spec, set()))[1].add(task.predictor)
     arms = list(examples)
-    predictors = {part for _, name in planners.values() for part in predictor_parts(name)}
+    predictors = {part for _, names in planners.values() for name in names for part in predictor_parts(name)}
     return [
         Part("audit", partial(_warm_up_audit, list(examples.values())), TYPICAL_HOUSE_S),
         Part("collision checks", partial(_for_each, warm_up_problem, arms), TYPICAL_HOUSE_S),
@@ -46,12 +46,12 @@ def warm_up_parts(tasks: Iterable[TrialTask]) -> list[Part]:
         *(
             Part(
                 label,
-                partial(_for_each, partial(warm_up_planner, *planner), arms),
+                partial(_warm_up_planner, spec, sorted(names), arms),
                 TYPICAL_PLANNER_S,
                 planner=label,
-                is_outside=bool(planner[0].code),
+                is_outside=bool(spec.code),
             )
-            for label, planner in planners.items()
+            for label, (spec, names) in planners.items()
         ),
     ]
 
@@ -61,6 +61,12 @@ def _warm_up_audit(examples: Iterable[Scenario]) -> None:
         start_is_free(scenario)
         audit(scenario, [0.0, 1.0], [scenario.start, scenario.start])
         collides(scenario, scenario.start, 0.0)
+
+
+def _warm_up_planner(spec: PlannerSpec, predictors: Iterable[str], arms: Iterable[ContinuumArm]) -> None:
+    for predictor in predictors:
+        for arm in arms:
+            warm_up_planner(spec, predictor, arm)
 
 
 def _for_each_example(warm_up: Callable[[Scenario], object], examples: Iterable[Scenario]) -> None:

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from suite.cli.options import Arm, Family, Obstacles, Seed, Trials, whole_numbers
+from suite.cli.options import Arm, Family, Obstacles, Seed, Trials, numbers
 
 
 def generate(
@@ -19,19 +19,21 @@ def generate(
     seed: Seed = None,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the file if it is there.")] = False,
 ) -> None:
-    """Write the scenarios of a family to a file."""
+    """Write scenarios of families to a file."""
     from scenarios import ContinuumArm, generate, save_scenarios
     from suite.errors import SuiteError
+    from suite.experiment.values import arms_of, specs_of
 
-    numbers = whole_numbers(obstacles or "1,3,5,6")
+    counts = numbers("--obstacles", obstacles or "1,3,5,6", int)
+    arms = [ContinuumArm.from_text(text) for text in arms_of(arm or [""])]
     if file.exists() and not overwrite:
         raise SuiteError(f"{file}: found a file there, allowed with --overwrite")
     drawn = [
         scenario
-        for n in numbers
-        for scenario in generate(
-            family or "orbit", n, 10 if trials is None else trials, seed or 0, ContinuumArm.from_text(arm or "")
-        )
+        for each in arms
+        for spec in specs_of(family or "orbit")
+        for n in counts
+        for scenario in generate(spec, n, 10 if trials is None else trials, seed or 0, each)
     ]
     save_scenarios(file, drawn)
     print(f"{file}: {len(drawn)} scenarios")

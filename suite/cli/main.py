@@ -20,9 +20,12 @@ from suite.cli.check import check
 from suite.cli.check_planner import check_planner
 from suite.cli.compare import compare
 from suite.cli.generate import generate
+from suite.cli.importing import importing
+from suite.cli.merge import merge
 from suite.cli.new_planner import new_planner
 from suite.cli.options import EXIT_INTERRUPTED, EXIT_USAGE, say
 from suite.cli.planners import planners
+from suite.cli.plot import plot
 from suite.cli.predictors import predictors
 from suite.cli.run import run
 from suite.cli.table import table
@@ -33,8 +36,11 @@ app = typer.Typer(
     rich_markup_mode=None,  # rich help would double the time of --help
     pretty_exceptions_enable=False,
 )
-for verb in (run, table, compare, generate, planners, new_planner, check_planner, predictors, check, audit, version):
+for verb in (
+    run, table, compare, merge, plot, generate, planners, new_planner, check_planner, predictors, check, audit, version,
+):  # fmt: skip
     app.command()(verb)
+app.add_typer(importing, name="import")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

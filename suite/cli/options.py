@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
@@ -19,19 +20,33 @@ EXIT_INTERRUPTED = 130
 
 _Number = TypeVar("_Number", int, float)
 
-Family = Annotated[str | None, typer.Option(help="Scenario family. [default: orbit]")]
-Arm = Annotated[str | None, typer.Option(help="Settings of the arm, such as 'radius_m=0.015,n_sections=2'.")]
-Obstacles = Annotated[str | None, typer.Option(help="Numbers of obstacles. [default: 1,3,5,6]")]
+Family = Annotated[
+    str | None, typer.Option(help="Scenario families, such as 'orbit[max_speed_m_s=0.005..0.03/6]'. [default: orbit]")
+]
+Arm = Annotated[
+    list[str] | None,
+    typer.Option(help="Settings of the arm, such as 'radius_m=0.015,n_sections=2'; may be repeated: several arms."),
+]
+Obstacles = Annotated[str | None, typer.Option(help="Numbers of obstacles, such as 1,3 or 1..10. [default: 1,3,5,6]")]
 Trials = Annotated[int | None, typer.Option(help="Scenarios per number of obstacles. [default: 10]")]
 Seed = Annotated[int | None, typer.Option(help="Seed of the experiment. [default: 0]")]
+Seeds = Annotated[str | None, typer.Option(help="Seeds of the experiment. [default: 0]")]
+By = Annotated[
+    str | None,
+    typer.Option(help="Conditions to tell apart, such as n_obstacles,noise_mm; the others are pooled, and it says so."),
+]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress and no remarks, results and errors only.")]
 Run = Annotated[Path, typer.Argument(help="Folder of a run.")]
 
 
-def experiment_of(preset: str | None, given: dict[str, Any]) -> Experiment:
-    """The preset's fields with those that were given on the command line in their place."""
-    from suite.experiment.experiment import make_experiment, preset_fields
+def experiment_of(preset: str | None, file: Path | None, given: dict[str, Any]) -> Experiment:
+    """The fields of a preset, or of a file, with those that were given on the command line in their place."""
+    from suite.experiment.experiment import make_experiment
+    from suite.experiment.file import preset_fields, read_experiment_file
 
-    fields = (preset_fields(preset) if preset else {}) | given
+    if preset and file:
+        raise usage(f"--preset: found beside {file}, allowed one of them; a file may name its preset")
+    fields = (preset_fields(preset) if preset else read_experiment_file(file) if file else {}) | given
     clash = [name for name in ("family", "arm", "obstacles", "trials") if name in given]
     if fields.get("scenario_files") and clash:
         raise usage(f"--{clash[0]}: found beside --scenarios, allowed without: the files say it all")
@@ -40,19 +55,19 @@ def experiment_of(preset: str | None, given: dict[str, Any]) -> Experiment:
     return make_experiment(**fields)
 
 
-def split(specs: str) -> tuple[str, ...]:
-    """Planners from a comma-separated list."""
-    from scenarios.spec import split_specs
+def numbers(option: str, text: str, kind: Callable[[str], _Number]) -> tuple[_Number, ...]:
+    """Numbers from a list such as ``1,3,5`` or a range such as ``1..10``."""
+    from suite.experiment.values import ALLOWED, listed
 
-    return tuple(split_specs(specs))
-
-
-def whole_numbers(text: str) -> tuple[int, ...]:
-    """Numbers of obstacles from a comma-separated list."""
     try:
-        return tuple(int(part) for part in text.split(","))
+        return tuple(kind(part) for part in listed(text))
     except ValueError:
-        raise usage(f"--obstacles: found {text!r}, allowed whole numbers such as 1,3,5,6") from None
+        raise usage(f"{option}: found {text!r}, allowed {ALLOWED}") from None
+
+
+def names(text: str) -> tuple[str, ...]:
+    """Names from a comma-separated list."""
+    return tuple(part.strip() for part in text.split(",") if part.strip())
 
 
 def within(option: str, value: _Number, low: float, high: float) -> _Number:

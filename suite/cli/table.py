@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from suite.cli.options import EXIT_NOTHING, Run, say, usage
+from suite.cli.options import EXIT_NOTHING, By, Run, names, say, usage
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from suite.compare.conditions import Pooled
+
+Format = Literal["terminal", "markdown", "csv", "latex", "json"]
 
 
 def table(
     run: Run,
-    format: Annotated[
-        Literal["terminal", "markdown", "csv", "latex"], typer.Option(help="What to print.")
-    ] = "terminal",
+    format: Annotated[Format, typer.Option(help="What to print.")] = "terminal",
+    by: By = None,
     against: Annotated[
         str | None, typer.Option(help="Put published numbers beside: 'published' (the paper's Table I) or a CSV file.")
     ] = None,
@@ -23,27 +29,41 @@ def table(
     ] = "swept",
 ) -> None:
     """Print the comparison of a run, finished or not."""
+    from suite.compare.conditions import Pooled, pool
     from suite.compare.pairs import compare_in_pairs
     from suite.compare.published import beside, published_file, read_published
     from suite.compare.tables import SUMMED_UP, summarize
-    from suite.show import text
-    from suite.show.conditions import sentence
-    from suite.show.terminal import print_summary
     from suite.store.run_folder import planner_order, present_codes, read_manifest, read_table, read_trials
 
     trials = read_trials(run) if reference is not None else read_trials(run, SUMMED_UP)
     if trials is not None and trials.empty:
         say(f"{run}: no trial has finished yet")
         raise typer.Exit(EXIT_NOTHING)
-    if trials is None and reference is not None:
-        raise usage(f"--reference: found no trials in {run}, allowed where they were kept")
+    pairs, pooled = None, None
     if trials is None:
+        for option, value in (("--reference", reference), ("--by", by)):
+            if value is not None:
+                raise usage(f"{option}: found no trials in {run}, allowed where they were kept")
         summary = read_table(run)
     else:
-        summary = summarize(trials, planner_order(run), present_codes(read_manifest(run)))
+        pooled = Pooled(trials, {}) if by is None else pool(trials, names(by))
+        summary = summarize(pooled.trials, planner_order(run), present_codes(read_manifest(run)))
+        pairs = None if reference is None else compare_in_pairs(pooled.trials, reference, verdict)
     if against is not None:
         summary = beside(summary, read_published(published_file(against)))
-    pairs = None if trials is None or reference is None else compare_in_pairs(trials, reference, verdict)
+    _print(summary, pairs, pooled, format)
+
+
+def _print(summary: pd.DataFrame, pairs: pd.DataFrame | None, pooled: Pooled | None, format: Format) -> None:
+    from suite.show import text
+    from suite.show.conditions import sentence
+    from suite.show.terminal import print_summary
+
+    if format == "json":
+        print(text.as_json(summary, pairs, pooled))
+        return
+    if pooled is not None and pooled.over and format != "csv":
+        print(f"% {pooled}" if format == "latex" else f"{pooled}\n")
     if format == "terminal":
         print_summary(summary)
     else:

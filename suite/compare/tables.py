@@ -123,7 +123,7 @@ def _share(group: pd.DataFrame, bounds: pd.DataFrame, success: str) -> float:
     """
     possible = bounds.dropna(subset=[success]).groupby("scenario_hash")[success].any()
     common = group[group["scenario_hash"].isin(possible.index)]
-    shown = int(possible[possible.index.isin(common["scenario_hash"])].sum())
+    shown = int(possible.loc[common["scenario_hash"]].sum())  # as often as it was tried, where trials are pooled
     if are_bounds(group).iloc[0] or not shown:
         return float("nan")
     return 100 * int(common[success].sum()) / shown

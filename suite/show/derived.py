@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TextIO
 
@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 
 from scenarios import PackedScenarios
+from suite.compare.conditions import telling_apart
 from suite.compare.tables import SUMMED_UP, summarize
 from suite.files import replacing, write_text
 from suite.show.text import as_csv, as_markdown_page
@@ -35,7 +36,8 @@ def write_derived(
     Returns:
         The summary that stands in ``table.csv``.
     """
-    summary = summarize(joined(map(columns_frame, journal.columns(SUMMED_UP)), SUMMED_UP), list(present), present)
+    trials = joined(map(columns_frame, journal.columns(SUMMED_UP)), SUMMED_UP)
+    summary = summarize(trials, list(present), present)
     with replacing(folder / "trials.csv") as handle:
         handle.write(",".join(COLUMN_NAMES) + "\n")
         handle.writelines(trials_csv(columns_frame(columns), header=False) for columns in journal.columns())
@@ -44,20 +46,26 @@ def write_derived(
     with replacing(folder / "scenarios.jsonl") as handle:
         handle.writelines(scenarios.lines())
     with replacing(folder / "trajectories.csv") as handle:
-        _write_trajectories(handle, journal.executed(), n_sections=max(arm.n_sections for arm in scenarios.arms))
+        n_sections = max(arm.n_sections for arm in scenarios.arms)
+        _write_trajectories(handle, journal.executed(), telling_apart(trials), n_sections)
     return summary
 
 
-def _write_trajectories(handle: TextIO, executed: Iterable[Executed], n_sections: int) -> None:
-    """One line per timed state; arms with fewer sections leave the last columns empty."""
+def _write_trajectories(handle: TextIO, executed: Iterable[Executed], telling: Sequence[str], n_sections: int) -> None:
+    """One line per timed state; arms with fewer sections leave the last columns empty.
+
+    Where a planner met a scenario more than once, a column says under which of the ``telling`` conditions.
+    """
     writer = csv.writer(handle, lineterminator="\n")
     bends = [f"{axis}{section}_rad" for section in range(1, n_sections + 1) for axis in "uv"]
-    writer.writerow(["scenario_id", "planner", "time_s", *bends])
+    writer.writerow(["scenario_id", "planner", *(["condition"] if telling else []), "time_s", *bends])
     for trial in executed:
         timed = np.column_stack([trial.times_s, trial.configurations_rad])
         # One format for a whole trial: thousands of states are written in the time that cells would take for hundreds.
         names = io.StringIO()
-        csv.writer(names, lineterminator="").writerow([trial.scenario_id, trial.planner])
+        condition = ";".join(f"{name}={trial.conditions[name]}" for name in telling)
+        named = [trial.scenario_id, trial.planner, *([condition] if telling else [])]
+        csv.writer(names, lineterminator="").writerow(named)
         numbers = [FLOAT_FORMAT] * timed.shape[1] + [""] * (1 + len(bends) - timed.shape[1])
         line = ",".join([names.getvalue().replace("%", "%%"), *numbers]) + "\n"
         handle.write(line * len(timed) % tuple(timed.reshape(-1).tolist()))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from typing import Any, Literal, NamedTuple
 
@@ -9,6 +10,7 @@ import pandas as pd
 from tabulate import tabulate
 
 from suite.auditor.verdicts import VERDICTS
+from suite.compare.conditions import Pooled
 from suite.show.conditions import column, sentence, varying
 from suite.store.frames import FLOAT_FORMAT
 from suite.trial.columns import WORLD
@@ -47,8 +49,10 @@ def shown_columns(summary: pd.DataFrame) -> list[Shown]:
     has_bound, is_known = summary["is_bound"].any(), summary["scenarios_possible"].notna().any()
     varied = varying(summary)
     columns = [
-        Shown("family", lambda row: str(row.family)) if len(set(summary["family"])) > 1 else None,
-        Shown("obstacles", lambda row: str(row.n_obstacles)),
+        Shown("family", lambda row: "all" if pd.isna(row.family) else str(row.family))
+        if len(set(summary["family"])) > 1
+        else None,
+        Shown("obstacles", lambda row: "all" if pd.isna(row.n_obstacles) else str(row.n_obstacles)),
         *(Shown(*column(summary, name)) for name in varied if name in WORLD_NAMES),
         Shown("planner", lambda row: f"{row.planner} (bound)" if row.is_bound else str(row.planner)),
         *(Shown(*column(summary, name)) for name in varied if name not in WORLD_NAMES),
@@ -103,6 +107,22 @@ def render_pairs(pairs: pd.DataFrame, format: Format) -> str:
     titles = ["obstacles", *(condition.title for condition in conditions), "planner", "reference"]
     titles += ["scenarios", "only planner", "only reference", "p", "p, Holm"]
     return _tabulated(titles, rows, format)
+
+
+def as_json(summary: pd.DataFrame, pairs: pd.DataFrame | None = None, pooled: Pooled | None = None) -> str:
+    """Every column, unrounded: ``table``, with ``pairs`` and what was ``pooled`` where that was asked for."""
+    parts: dict[str, Any] = {"table": _records(summary)}
+    if pairs is not None:
+        parts["pairs"] = _records(pairs)
+    if pooled is not None:
+        parts["pooled"] = pooled.over
+    return json.dumps(parts, allow_nan=False, default=str)
+
+
+def _records(frame: pd.DataFrame) -> list[dict[str, Any]]:
+    """Rows as plain values; null for what there is not."""
+    objects = frame.astype(object).where(frame.notna(), None)
+    return [{str(key): value for key, value in row.items()} for row in objects.to_dict("records")]
 
 
 def as_markdown_page(title: str, summary: pd.DataFrame) -> str:

@@ -27,7 +27,7 @@ _NEW_IN_TABLES = {column.name: column.dtype for column in CONDITIONS} | {"stale"
 
 TABLE_TYPES: dict[str, str] = {
     "family": "string",
-    "n_obstacles": "int64",
+    "n_obstacles": "Int64",
     "planner": "string",
     **{column.name: column.dtype for column in CONDITIONS},
     "stale": "int64",

@@ -16,18 +16,23 @@ class Standing:
 
     chosen: dict[str, Code] = field(default_factory=dict)
     """By the trials' keys, in the order asked for: the code whose row stands, or will stand, for each."""
-    there: int = 0
-    """Trials that have such a row."""
+    done: Counter[str] = field(default_factory=Counter)
+    """Trials by planner that have such a row."""
     left: list[int] = field(default_factory=list)
     """The others, by their places in the order asked for."""
-    examples: dict[tuple[str, ContinuumArm], TrialTask] = field(default_factory=dict)
-    """One of those for every planner and arm among them: what a warm-up has to know."""
+    examples: dict[tuple[str, str, ContinuumArm], TrialTask] = field(default_factory=dict)
+    """One of those for every planner, predictor and arm among them: what a warm-up has to know."""
     stale: Counter[str] = field(default_factory=Counter)
     """Trials by planner whose rows are of other code of that planner: they run again."""
     kept: int = 0
     """Trials whose rows are of other code and are used as they are."""
     other_houses: Counter[str] = field(default_factory=Counter)
     """Trials whose rows are of another house, by its hash: for the user to decide about."""
+
+    @property
+    def there(self) -> int:
+        """Trials that have such a row."""
+        return self.done.total()
 
     def notes(self) -> list[str]:
         """What there is to tell the user, a line each."""
@@ -56,10 +61,10 @@ def settle(tasks: Iterable[TrialTask], made: Mapping[str, Sequence[Code]], *, ke
         codes = made.get(task.key, ())
         code = task.code
         if code in codes:
-            standing.there += 1
+            standing.done[task.spec.label] += 1
         elif codes and keep_stale:
             code = codes[-1]
-            standing.there += 1
+            standing.done[task.spec.label] += 1
             standing.kept += 1
         elif any(other.house == code.house for other in codes):
             standing.stale[task.spec.label] += 1
@@ -68,7 +73,7 @@ def settle(tasks: Iterable[TrialTask], made: Mapping[str, Sequence[Code]], *, ke
         standing.chosen[task.key] = code
         if code not in codes:
             standing.left.append(place)
-            standing.examples.setdefault((task.spec.label, task.scenario.arm), task)
+            standing.examples.setdefault((task.spec.label, task.predictor, task.scenario.arm), task)
     return standing
 
 

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING
 from scenarios.reading import read_json
 from suite.errors import SuiteError
 from suite.experiment.code import House, changes, is_house
-from suite.experiment.experiment import MAX_MANIFEST_BYTES
-from suite.experiment.manifest import Manifest
+from suite.experiment.manifest import MAX_MANIFEST_BYTES, Manifest
 from suite.files import write_text
 from suite.store.frames import columns_frame, joined, read_table_csv, read_trials_csv, refuse_gaps
 from suite.store.growth import Standing, settle
@@ -86,7 +85,7 @@ def read_trials(folder: Path, names: Sequence[str] = COLUMN_NAMES) -> pd.DataFra
     """
     if (folder / JOURNAL).exists():
         try:
-            with Journal(folder / JOURNAL, read_only=True, old_house=_old_house(folder)) as journal:
+            with open_journal(folder) as journal:
                 return refuse_gaps(joined(map(columns_frame, journal.columns(names)), names), folder / JOURNAL)
         except (OSError, sqlite3.Error) as error:
             raise SuiteError(f"{folder / JOURNAL}: cannot be read: {error}{_damaged(error)}") from None
@@ -102,6 +101,18 @@ def read_table(folder: Path) -> pd.DataFrame:
     if not (folder / TABLE).exists():
         raise SuiteError(f"{folder}: found no {JOURNAL}, {TRIALS} or {TABLE}, allowed: the folder of a run")
     return read_table_csv(folder / TABLE)
+
+
+def open_journal(folder: Path) -> Journal:
+    """The journal of a run of any version, to read.
+
+    Raises:
+        SuiteError: There is none.
+        sqlite3.Error: It cannot be read.
+    """
+    if not (folder / JOURNAL).exists():
+        raise SuiteError(f"{folder}: found no {JOURNAL}, allowed: the folder of a run with its journal")
+    return Journal(folder / JOURNAL, read_only=True, old_house=_old_house(folder))
 
 
 @contextmanager
@@ -147,7 +158,21 @@ def open_run(
 def _damaged(error: Exception) -> str:
     """What to do about a journal of which a part is lost."""
     is_damaged = isinstance(error, sqlite3.DatabaseError) and not isinstance(error, sqlite3.OperationalError)
-    return f"; the last {TRIALS} may still be whole, and --fresh starts over" if is_damaged else ""
+    return "; suite merge saves what can be read, run --fresh starts over" if is_damaged else ""
+
+
+def standing_of(folder: Path, manifest: Manifest, tasks: Tasks, *, keep_stale: bool) -> Standing:
+    """How far the run in ``folder`` is with ``tasks``; nothing is written.
+
+    Raises:
+        SuiteError: As ``open_run``, but for what only writing shows.
+    """
+    try:
+        _refuse_strangers(folder)
+        house = {part: manifest[part] for part in ("sources", "versions")}
+        return _standing(folder, _old_house(folder), house, tasks, keep_stale=keep_stale)
+    except (OSError, sqlite3.Error) as error:
+        raise SuiteError(f"{folder}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
 
 
 def _standing(folder: Path, old_house: House | None, house: House, tasks: Tasks, *, keep_stale: bool) -> Standing:

@@ -208,7 +208,7 @@ def _as_present(version: int, old_house: House | None) -> str:
         "prediction_margin": "old_margin(planner)",
         "is_bound": "old_is_bound(planner)",
     }
-    names = ", ".join(f'"{name}"' for name in KEY_NAMES)
+    names = ", ".join(made.get(name, f'"{name}"') for name in KEY_NAMES)
     selected = ["rowid AS number", f"trial_key({names}) AS key"]
     for column in COLUMNS:
         value = f'"{column.name}"' if column.since == 1 else made.get(column.name, "NULL")

@@ -131,6 +131,7 @@ KEY_NAMES = (
     "planner",
     "settings",
     "predictor",
+    "prediction_margin",
     "limits",
     "noise_mm",
     "dropout",

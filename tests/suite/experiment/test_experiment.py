@@ -3,11 +3,13 @@ import json
 import pytest
 from fakes import fake_spec, make_scenario
 
-from scenarios import UserError, save_scenarios
+from scenarios import SpecError, UserError, save_scenarios
 from suite.errors import SuiteError
 from suite.experiment.code import house, house_code
-from suite.experiment.experiment import PRESETS, make_experiment, preset_fields
+from suite.experiment.experiment import make_experiment
+from suite.experiment.file import preset_fields
 from suite.experiment.manifest import make_manifest
+from suite.experiment.presets import PRESETS
 from suite.trial.task import TrialTask
 
 
@@ -19,9 +21,9 @@ from suite.trial.task import TrialTask
         ({"planners": ("temporal[horizon=0]",)}, r"temporal\[horizon\]: found '0', allowed: .*"),
         ({"planners": ("pf", "pf")}, r"planners: found pf 2 times, allowed once"),
         ({"planners": ()}, r"planners: found \(\), allowed: .*"),
-        ({"obstacles": (3, -1)}, r"obstacles\.1: found -1, allowed: .*greater than or equal to 0"),
+        ({"obstacles": (3, -1)}, r"obstacles: found -1, allowed: .*greater than or equal to 0"),
         ({"obstacles": (3, 3)}, r"obstacles: found 3 2 times, allowed once"),
-        ({"obstacles": (10**6,)}, r"obstacles\.0: found 1000000, allowed: .*"),
+        ({"obstacles": (10**6,)}, r"obstacles: found 1000000, allowed: .*"),
         ({"trials": 0}, r"trials: found 0, allowed: .*greater than or equal to 1"),
         ({"trials": 10**9}, r"trials: found 1000000000, allowed: .*"),
         ({"seed": -1}, r"seed: found -1, allowed: .*"),
@@ -140,7 +142,7 @@ def test_the_same_name_twice_is_refused(tmp_path) -> None:
 def test_table1_is_the_papers() -> None:
     experiment = make_experiment(**PRESETS["table1"])
     assert experiment.planners == ("t2", "t3", "temporal-best", "h", "hs", "pf")
-    assert (experiment.obstacles, experiment.trials, experiment.seed) == ((1, 3, 5, 6), 100, 0)
+    assert (experiment.obstacles, experiment.trials, experiment.seed) == ((1, 3, 5, 6), 100, (0,))
 
 
 def test_a_manifest_reruns_its_experiment(tmp_path) -> None:
@@ -150,14 +152,22 @@ def test_a_manifest_reruns_its_experiment(tmp_path) -> None:
     assert make_experiment(**preset_fields(str(file))) == experiment
 
 
-@pytest.mark.parametrize("text", ["", "[]", "{}", '{"experiment": 3}', "{"])
+@pytest.mark.parametrize("text", ["", "[]", '{"experiment": 3}', "{"])
 def test_a_file_without_an_experiment_is_no_preset(tmp_path, text: str) -> None:
     file = tmp_path / "manifest.json"
     file.write_text(text)
-    with pytest.raises(UserError, match="experiment|not valid JSON"):
+    with pytest.raises(UserError, match=r"manifest\.json: (found no experiment|not valid JSON)"):
         preset_fields(str(file))
 
 
 def test_an_unknown_preset_lists_the_known_ones() -> None:
-    with pytest.raises(SuiteError, match=r"preset: found 'table9', allowed table1 or the manifest\.json of a run"):
+    with pytest.raises(SpecError, match="preset: found 'table9', allowed table1; nearest: table1"):
         preset_fields("table9")
+
+
+def test_bounds_are_a_planner_more() -> None:
+    asked = make_experiment(planners=("pf",))
+    assert asked.with_bound().planners == ("pf", "clairvoyant")
+    assert asked.with_bound(5).planners == ("pf", "clairvoyant[restarts=100]")
+    assert asked.with_bound().with_bound() == asked.with_bound()
+    assert asked.with_bound().name == asked.name  # the run grows

@@ -34,17 +34,23 @@ def rows_ever(folder: Path) -> int:
         ({"planners": ("rrt", "pf")}, 0),
         ({"obstacles": (0, 1, 2)}, 8),
         ({"obstacles": (2, 0), "trials": 5, "planners": ("t2", "rrt")}, 16),
+        ({"noise_mm": (0, 2)}, 16),
+        ({"family": "orbit,orbit[max_speed_m_s=0.01|0.03]", "limits": (False, True)}, 80),
+        ({"arm": ("", "radius_m=0.01"), "seed": (5, 6)}, 48),
+        ({"margin": (None, 2.0)}, 16),
     ],
 )
 def test_a_run_grows_by_what_is_new_and_ends_like_an_unbroken_one(tmp_path, changes: dict, new: int) -> None:
     run_with_fakes(tmp_path / "grown")
-    before = read_trials(tmp_path / "grown").set_index("trial_seed")
+    index = ["scenario_id", "planner", "limits", "noise_mm", "prediction_margin"]
+    before = read_trials(tmp_path / "grown").set_index(index)
     assert len(run_with_fakes(tmp_path / "grown", **changes)) == new
     run_with_fakes(tmp_path / "unbroken", **changes)
     assert contents(tmp_path / "grown") == contents(tmp_path / "unbroken")
     manifests = [json.loads((tmp_path / name / "manifest.json").read_text()) for name in ("grown", "unbroken")]
     assert manifests[0] == manifests[1]  # the effective configuration of the latest command
-    after = read_trials(tmp_path / "grown").set_index("trial_seed")
+    after = read_trials(tmp_path / "grown").set_index(index)
+    assert after.index.is_unique
     kept = before.index.intersection(after.index)
     assert len(kept) == len(after) - new
     pd.testing.assert_frame_equal(before.loc[kept], after.loc[kept])  # timings too

@@ -1,0 +1,30 @@
+"""What a figure is asked to show, and what comes of it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Spent = Literal["checks", "time"]
+
+
+class Asked(NamedTuple):
+    """The same for every kind; a kind uses what concerns it."""
+
+    over: str | None = None
+    """Condition on the axis; the one with most values when None."""
+    by: tuple[str, ...] | None = None
+    """Conditions that are told apart, all others being pooled; all that vary when None."""
+    verdict: str = "swept"
+    spent: Spent | None = None
+    """Put points where their median trial's checks or planning time is, in place of the condition's value."""
+
+
+class Drawn(NamedTuple):
+    """A figure, and what stands beside it."""
+
+    figure: Figure
+    remarks: list[str]
+    """What a reader has to know, a sentence each."""
