@@ -148,7 +148,6 @@ def run(
     preset: str | None = None,
     processes: int = 0,
     hang_limit_s: float = 300.0,
-    memory_limit_mb: float | None = None,
     fresh: bool = False,
     keep_stale: bool = False,
     **conditions: Any,
@@ -163,7 +162,6 @@ def run(
         processes: Worker processes; 0 runs every trial in this process, where a planner that hangs or crashes
             can't be stopped.
         hang_limit_s: In worker processes a trial that takes longer is killed [s].
-        memory_limit_mb: There a trial that takes more memory is killed [MB]; Linux alone tells how much it takes.
         fresh: Start over what the folder holds.
         keep_stale: Use rows that other code has made as they are.
         **conditions: Fields of ``suite.experiment.experiment.Experiment``: ``family``, ``arm``, ``obstacles``,
@@ -182,7 +180,7 @@ def run(
         experiment,
         folder,
         workers=processes,
-        limits=Limits(hang_limit_s, memory_limit_mb),
+        limits=Limits(hang_limit_s),
         fresh=fresh,
         keep_stale=keep_stale,
     )
