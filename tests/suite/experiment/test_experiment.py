@@ -163,3 +163,11 @@ def test_a_file_without_an_experiment_is_no_preset(tmp_path, text: str) -> None:
 def test_an_unknown_preset_lists_the_known_ones() -> None:
     with pytest.raises(SpecError, match="preset: found 'table9', allowed table1; nearest: table1"):
         preset_fields("table9")
+
+
+def test_bounds_are_a_planner_more() -> None:
+    asked = make_experiment(planners=("pf",))
+    assert asked.with_bound().planners == ("pf", "clairvoyant")
+    assert asked.with_bound(5).planners == ("pf", "clairvoyant[restarts=100]")
+    assert asked.with_bound().with_bound() == asked.with_bound()
+    assert asked.with_bound().name == asked.name  # the run grows
