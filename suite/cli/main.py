@@ -19,6 +19,7 @@ from suite.cli.audit import audit
 from suite.cli.check import check
 from suite.cli.check_planner import check_planner
 from suite.cli.compare import compare
+from suite.cli.export import export
 from suite.cli.generate import generate
 from suite.cli.importing import importing
 from suite.cli.merge import merge
@@ -37,7 +38,8 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 for verb in (
-    run, table, compare, merge, plot, generate, planners, new_planner, check_planner, predictors, check, audit, version,
+    run, table, compare, merge, export, plot, generate, planners, new_planner, check_planner, predictors, check, audit,
+    version,
 ):  # fmt: skip
     app.command()(verb)
 app.add_typer(importing, name="import")
