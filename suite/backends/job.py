@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Generator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 if TYPE_CHECKING:
     from suite.trial.lineup import Tasks
@@ -12,6 +12,15 @@ if TYPE_CHECKING:
 
 LEAST_WARM_UP_S = 120.0
 """Compiling a part of the warm-up takes up to ten seconds of processor time; this many make it a hang anywhere."""
+
+
+class Limits(NamedTuple):
+    """What a trial may take in a worker process, before it is killed and recorded as such."""
+
+    hang_s: float = 300.0
+    """Wall time [s]: ``planner_hung``. A planner's warm-up has two minutes at the least: it may have to compile."""
+    memory_mb: float | None = None
+    """Memory beyond what its process had before [MB]: ``planner_memory``; no limit when None."""
 
 
 @dataclass(frozen=True)

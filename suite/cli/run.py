@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
+from suite.backends.memory import CAN_BE_MEASURED
 from suite.backends.processes import Processes
+from suite.cli.cores import cores
 from suite.cli.options import (
     EXIT_INTERRUPTED,
     Arm,
@@ -17,7 +19,6 @@ from suite.cli.options import (
     Quiet,
     Seeds,
     Trials,
-    cores,
     experiment_of,
     names,
     numbers,
@@ -77,6 +78,9 @@ def run(
     hang_limit_s: Annotated[
         float, typer.Option(help="A trial that takes longer is killed; a warm-up has 120 s at least.")
     ] = 300.0,
+    memory_limit_mb: Annotated[
+        float | None, typer.Option(help="A trial that takes more memory is killed. [default: no limit]")
+    ] = None,
     bounds: Annotated[
         bool,
         typer.Option("--bounds", help="Say what is possible: clairvoyant solves it, or a proof says that nobody can."),
@@ -101,13 +105,15 @@ def run(
     """
     n_workers = within("--workers", cores() if workers is None else workers, 1, 1024)
     within("--hang-limit-s", hang_limit_s, 1, 1e6)
+    if memory_limit_mb is not None:
+        if not CAN_BE_MEASURED:
+            raise usage("--memory-limit-mb: found it on a system that does not tell, allowed on Linux")
+        within("--memory-limit-mb", memory_limit_mb, 1, 1e9)
     within("--open-effort", open_effort, 1, 1000)
     if fresh and keep_stale:
         raise usage("--keep-stale: found beside --fresh, allowed one of them")
-    if scheduler is not None and backend != "dask":
-        raise usage("--scheduler: found beside --backend local, allowed with --backend dask")
-    if scheduler is not None and workers is not None:
-        raise usage("--workers: found beside --scheduler, allowed without: the cluster's own are used")
+    if scheduler is not None:
+        _refuse_beside_scheduler(backend, workers)
     if open_effort > 1 and not bounds:
         raise usage("--open-effort: found without --bounds, allowed with it")
     fields = {
@@ -136,6 +142,7 @@ def run(
     with ExitStack() as stack:
         # The first local process is on its way while this one imports what follows.
         where = stack.enter_context(Processes(n_workers)) if backend == "local" else _cluster(scheduler, n_workers)
+        from suite.backends.job import Limits
         from suite.runner import RunInterrupted, run_experiment
 
         experiment = asked()
@@ -145,7 +152,7 @@ def run(
                 experiment,
                 folder,
                 workers=where,
-                hang_limit_s=hang_limit_s,
+                limits=Limits(hang_limit_s, memory_limit_mb),
                 fresh=fresh,
                 keep_stale=keep_stale,
                 quiet=quiet,
@@ -164,6 +171,13 @@ def run(
     print()
     for name in ("table.md", "table.csv", "trials.csv"):
         print(folder / name)
+
+
+def _refuse_beside_scheduler(backend: str, workers: int | None) -> None:
+    if backend != "dask":
+        raise usage("--scheduler: found beside --backend local, allowed with --backend dask")
+    if workers is not None:
+        raise usage("--workers: found beside --scheduler, allowed without: the cluster's own are used")
 
 
 def _cluster(scheduler: str | None, n_workers: int) -> Backend:

@@ -62,7 +62,7 @@ class _Slot:
         self.run = run
         self.lock = threading.Lock()
         """Held while a chunk is worked off."""
-        self.is_over = False
+        self.over = threading.Event()
         self._folder = tempfile.TemporaryDirectory(prefix="continuum-arm-suite-")
         try:
             self.unpacked = Unpacked(brief.sources, Path(self._folder.name))
@@ -106,7 +106,7 @@ def run_chunk(run: str, theirs: dict[str, object], brief: bytes, tasks: bytes) -
         with slot.lock:
             here = [slot.unpacked.here(task) for task in pickle.loads(zlib.decompress(tasks))]
             frames = b"".join(_frames(slot, here))
-            if slot.is_over:
+            if slot.over.is_set():
                 slot.close()
             return frames
     except (SuiteError, SpecError) as error:
@@ -122,7 +122,7 @@ def end(run: str) -> None:
     _OVER.add(run)
     for thread, slot in list(_SLOTS.items()):
         if slot.run == run:
-            slot.is_over = True
+            slot.over.set()
             del _SLOTS[thread]
             if slot.lock.acquire(blocking=False):
                 slot.close()
@@ -169,7 +169,9 @@ def _frames(slot: _Slot, tasks: list[TrialTask]) -> Iterator[bytes]:
     """The frames of results as they are made, until time or memory is up."""
     places = {task.key: place for place, task in enumerate(tasks)}
     began_s, begun, size, n_bytes = time.monotonic(), 0, 1, 0
-    while begun < len(tasks) and time.monotonic() - began_s < LONGEST_S and n_bytes < MAX_BYTES and not slot.is_over:
+    while (
+        begun < len(tasks) and time.monotonic() - began_s < LONGEST_S and n_bytes < MAX_BYTES and not slot.over.is_set()
+    ):
         batch, batch_s = tasks[begun : begun + size], time.monotonic()
         begun += len(batch)
         slot.crew.add(batch)
@@ -177,6 +179,6 @@ def _frames(slot: _Slot, tasks: list[TrialTask]) -> Iterator[bytes]:
             frame = _framed(places[task.key], result)
             n_bytes += len(frame)
             yield frame
-            if slot.is_over:
+            if slot.over.is_set():
                 return
         size = max(1, min(2 * size, int(size * BATCH_S / max(time.monotonic() - batch_s, 1e-3))))
