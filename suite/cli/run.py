@@ -106,9 +106,7 @@ def run(
     n_workers = within("--workers", cores() if workers is None else workers, 1, 1024)
     within("--hang-limit-s", hang_limit_s, 1, 1e6)
     if memory_limit_mb is not None:
-        if not CAN_BE_MEASURED:
-            raise usage("--memory-limit-mb: found it on a system that does not tell, allowed on Linux")
-        within("--memory-limit-mb", memory_limit_mb, 1, 1e9)
+        _check_memory_limit(memory_limit_mb)
     within("--open-effort", open_effort, 1, 1000)
     if fresh and keep_stale:
         raise usage("--keep-stale: found beside --fresh, allowed one of them")
@@ -171,6 +169,12 @@ def run(
     print()
     for name in ("table.md", "table.csv", "trials.csv"):
         print(folder / name)
+
+
+def _check_memory_limit(memory_limit_mb: float) -> None:
+    if not CAN_BE_MEASURED:
+        raise usage("--memory-limit-mb: found it on a system that does not tell, allowed on Linux")
+    within("--memory-limit-mb", memory_limit_mb, 1, 1e9)
 
 
 def _refuse_beside_scheduler(backend: str, workers: int | None) -> None:

@@ -46,7 +46,7 @@ def no_slots_left() -> Iterator[None]:
 
 
 def test_a_chunk_gives_the_rows_that_its_tasks_give_here() -> None:
-    tasks = make_tasks(["a", "raise", "die", "hang", "b"], trials=2)
+    tasks = make_tasks(["a", "raise", "quit", "hang", "b"])
     answer = run_chunk("one", house(), wrapped(brief_for()), wrapped(tasks))
     results = {k: checked_result(tasks[k], result) for k, result in results_in(answer, len(tasks)).items()}
     assert sorted(results) == list(range(len(tasks)))
@@ -59,7 +59,7 @@ def test_a_chunk_gives_the_rows_that_its_tasks_give_here() -> None:
             }
             assert (results[place].configurations_rad == here.configurations_rad).all()
         else:
-            assert row["outcome"] in {"planner_error", "planner_hung", "worker_lost"}
+            assert row["outcome"] == ("planner_hung" if task.spec.label == "hang" else "planner_error")
             assert row["planner"] == task.spec.label
 
 
