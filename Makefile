@@ -53,7 +53,7 @@ UV_COMPILE := uv pip compile pyproject.toml --quiet --universal --python-version
 
 lock:
 	$(UV_COMPILE) --all-extras --output-file requirements-all.lock
-	$(UV_COMPILE) --extra test --extra dev --constraint requirements-all.lock --output-file requirements-dev.lock
+	$(UV_COMPILE) --extra test --extra dev --extra cluster --constraint requirements-all.lock --output-file requirements-dev.lock
 	$(UV_COMPILE) --constraint requirements-all.lock --output-file requirements.lock
 
 # The script of replays and reports from web/, with three.js in it; needs node. What it makes is committed.
