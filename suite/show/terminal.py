@@ -21,7 +21,7 @@ WIDE = 240
 def print_summary(summary: pd.DataFrame) -> None:
     """Print conditions and summary to stdout, with a gap between numbers of obstacles."""
     console = Console()
-    if not console.is_terminal:
+    if not console.is_terminal or console.width < 1:  # COLUMNS=0
         console = Console(width=WIDE)
     if said := sentence(summary):
         console.print(f"{said}\n", markup=False, highlight=False)
