@@ -2,8 +2,8 @@
 
 The body is a chain of capsules about the segments between neighbouring points, each point straight between its frames.
 Spheres are taken exactly, other shapes as the spheres that hold them. Conservative advancement with bounded speeds
-makes the swept verdict hold at every instant, as for bending vectors (docs/audit.md). Bends are not known, so nothing is
-said of the executable verdict.
+makes the swept verdict hold at every instant, as for bending vectors (docs/audit.md). Bends are not known, so nothing
+is said of the executable verdict.
 """
 
 from __future__ import annotations

@@ -9,6 +9,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from scenarios.errors import UserError
+from scenarios.reading import open_regular
 from suite.errors import SuiteError
 
 MAX_BYTES = 1024**3
@@ -29,19 +31,21 @@ def read_points(file: Path) -> BackbonePoints:
     """Read an NPZ with ``time_s`` (T,), ``points_m`` (T, N, 3) and ``radius_m``.
 
     Raises:
-        SuiteError: The file cannot be read, is too large, or holds something else.
+        FileError: The file cannot be opened or is too large.
+        SuiteError: It is no NPZ, or holds something else.
     """
     try:
-        with zipfile.ZipFile(file) as packed:
+        with open_regular(file, MAX_BYTES) as handle, zipfile.ZipFile(handle) as packed:
             size = sum(part.file_size for part in packed.infolist())
-        if size > MAX_BYTES:
-            raise SuiteError(f"{file}: found {size} bytes of arrays, allowed {MAX_BYTES}")
-        with np.load(file, allow_pickle=False) as arrays:
+            if size > MAX_BYTES:
+                raise SuiteError(f"{file}: found {size} bytes of arrays, allowed {MAX_BYTES}")
+            handle.seek(0)
+            arrays = np.load(handle, allow_pickle=False)
             missing = [name for name in ("time_s", "points_m", "radius_m") if name not in arrays]
             if missing:
                 raise SuiteError(f"{file}: found no array {missing[0]}, allowed time_s, points_m and radius_m")
             times, points, radius = (np.asarray(arrays[name]) for name in ("time_s", "points_m", "radius_m"))
-    except SuiteError:
+    except UserError:
         raise
     except (OSError, ValueError, zipfile.BadZipFile, EOFError, NotImplementedError, RuntimeError) as error:
         raise SuiteError(f"{file}: cannot be read as an NPZ: {error}"[:300]) from None
