@@ -29,6 +29,7 @@ from suite.cli.planners import planners
 from suite.cli.plot import plot
 from suite.cli.predictors import predictors
 from suite.cli.run import run
+from suite.cli.show import show
 from suite.cli.table import table
 from suite.cli.version import version
 
@@ -38,8 +39,8 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 for verb in (
-    run, table, compare, merge, export, plot, generate, planners, new_planner, check_planner, predictors, check, audit,
-    version,
+    run, table, show, compare, plot, merge, export, generate,
+    planners, new_planner, check_planner, predictors, check, audit, version,
 ):  # fmt: skip
     app.command()(verb)
 app.add_typer(importing, name="import")
