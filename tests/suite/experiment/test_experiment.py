@@ -161,7 +161,7 @@ def test_a_file_without_an_experiment_is_no_preset(tmp_path, text: str) -> None:
 
 
 def test_an_unknown_preset_lists_the_known_ones() -> None:
-    with pytest.raises(SpecError, match="preset: found 'table9', allowed table1; nearest: table1"):
+    with pytest.raises(SpecError, match="preset: found 'table9', allowed table1, standard-1; nearest: table1"):
         preset_fields("table9")
 
 
