@@ -5,7 +5,7 @@ from scenarios.collision import are_states_valid, clearance, clearances, is_moti
 from scenarios.errors import ScenarioError
 from scenarios.families import FAMILIES, drawn, generate, start_is_free
 from scenarios.files import load_scenarios, save_scenarios
-from scenarios.motion import Line, Orbit, Track, Wander, Wave
+from scenarios.motion import Line, Orbit, Still, Track, Wander, Wave
 from scenarios.obstacle import Obstacle
 from scenarios.packed import PackedScenarios
 from scenarios.scenario import STEP_S, Scenario
@@ -32,6 +32,7 @@ __all__ = [
     "Shape",
     "ShapedWorld",
     "SpecError",
+    "Still",
     "Track",
     "Wander",
     "Wave",

@@ -2,11 +2,11 @@
 
 import functools
 import itertools
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
 FloatArray = npt.NDArray[np.float64]
 Coordinate = Annotated[float, Field(ge=-100.0, le=100.0, allow_inf_nan=False)]
@@ -117,14 +117,46 @@ class Wander(BaseModel):
         return float(np.linalg.norm(np.array(signs) @ peaks, axis=1).max())
 
 
+class Still(BaseModel):
+    """A body that stays where it is."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    kind: Literal["still"] = "still"
+    point_m: Point
+
+    def position(self, times_s: FloatArray) -> FloatArray:
+        """Centre at each time: (T,) [s] -> (T, 3) [m]."""
+        return np.tile(np.asarray(self.point_m), (len(times_s), 1))
+
+    @property
+    def speed_bound_m_s(self) -> float:
+        """It never moves."""
+        return 0.0
+
+
 class Track(BaseModel):
-    """A recorded motion: straight between timed points, at rest before the first and after the last."""
+    """A recorded motion: straight between timed points, at rest before the first and after the last.
+
+    In a gap nobody saw it: sensors report nothing there, and what is true is the straight way across.
+    """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     kind: Literal["track"] = "track"
     times_s: tuple[Finite, ...] = Field(min_length=1, max_length=100_000)
     positions_m: tuple[Point, ...] = Field(min_length=1, max_length=100_000)
+    gaps_s: tuple[tuple[Finite, Finite], ...] = Field(
+        default=(), max_length=100_000, description="from when to when it is unseen, ends not included"
+    )
+
+    @model_serializer(mode="wrap")
+    def _without_no_gaps(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Tracks from before there were gaps keep the hash of their content."""
+        fields: dict[str, Any] = write(self)
+        if not self.gaps_s:
+            del fields["gaps_s"]
+        return fields
 
     @model_validator(mode="after")
     def _is_a_function_of_time(self) -> "Track":
@@ -132,7 +164,16 @@ class Track(BaseModel):
             raise ValueError(f"times_s has {len(self.times_s)} entries, positions_m has {len(self.positions_m)}")
         if (np.diff(self.times_s) <= 0).any():
             raise ValueError("times_s must increase strictly")
+        ends = np.array(self.gaps_s, dtype=np.float64).reshape(-1)
+        if (np.diff(ends)[::2] <= 0).any() or (np.diff(ends) < 0).any():
+            raise ValueError("gaps_s must be intervals in increasing order that do not overlap")
         return self
+
+    def unseen(self, times_s: FloatArray) -> npt.NDArray[np.bool_]:
+        """Which of the times (T,) [s] are in a gap: (T,)."""
+        ends = np.array(self.gaps_s, dtype=np.float64).reshape(-1)
+        times = np.asarray(times_s, dtype=np.float64)
+        return np.asarray((ends.searchsorted(times, "left") % 2 == 1) & ~np.isin(times, ends))
 
     def position(self, times_s: FloatArray) -> FloatArray:
         """Centre at each time: (T,) [s] -> (T, 3) [m]."""
@@ -148,4 +189,4 @@ class Track(BaseModel):
         return float((steps / np.diff(self.times_s)).max())
 
 
-Motion = Annotated[Orbit | Line | Wander | Track, Field(discriminator="kind")]
+Motion = Annotated[Orbit | Line | Wander | Still | Track, Field(discriminator="kind")]

@@ -3,9 +3,10 @@
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from pydantic import BaseModel, ConfigDict, Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
-from scenarios.motion import FloatArray, Motion
+from scenarios.motion import FloatArray, Motion, Track
 from scenarios.shapes import Cover, Shape
 
 
@@ -47,3 +48,7 @@ class Obstacle(BaseModel):
     def position(self, times_s: FloatArray) -> FloatArray:
         """Centre at each time: (T,) [s] -> (T, 3) [m]."""
         return self.motion.position(times_s)
+
+    def unseen(self, times_s: FloatArray) -> npt.NDArray[np.bool_]:
+        """At which times (T,) [s] no sensor sees it, because its record has a gap there: (T,)."""
+        return self.motion.unseen(times_s) if isinstance(self.motion, Track) else np.zeros(len(times_s), dtype=bool)

@@ -1,8 +1,8 @@
 """Compare motion planners for continuum arms among moving obstacles.
 
-``run`` runs an experiment and ``load`` reads one back, both as a ``Run``; ``plan`` asks a planner once, ``run_trial``
-runs it through one scenario, ``audit`` judges a motion from anywhere. Arms, scenarios and kinematics are in
-``scenarios``. What is here is imported when it is first used, so that ``suite --help`` answers at once.
+``run`` runs an experiment, ``load`` reads one back, ``merge`` puts several together, each as a ``Run``; ``plan`` asks a
+planner once, ``run_trial`` runs it through one scenario, ``audit`` judges a motion from anywhere. Arms, scenarios and
+kinematics are in ``scenarios``. What is here is imported when it is first used: ``suite --help`` answers at once.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from suite.api import Run, audit, load, plan, run, run_trial
+    from suite.api import Run, audit, load, merge, plan, run, run_trial
 
-__all__ = ["Run", "audit", "load", "plan", "run", "run_trial"]
+__all__ = ["Run", "audit", "load", "merge", "plan", "run", "run_trial"]
 
 
 def __getattr__(name: str) -> object:

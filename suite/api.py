@@ -30,6 +30,7 @@ from suite.compare.tables import summarize
 from suite.errors import SuiteError
 from suite.experiment.experiment import make_experiment
 from suite.experiment.file import preset_fields
+from suite.merger import merge_runs
 from suite.runner import DEFAULT_HANG_LIMIT_S, run_experiment
 from suite.show.text import cells
 from suite.store.journal import Executed, Journal
@@ -185,6 +186,21 @@ def load(folder: str | Path) -> Run:
         SuiteError: There is none, or it cannot be read.
     """
     return Run(folder)
+
+
+def merge(runs: Iterable[str | Path], out: str | Path, *, keep_first: bool = False) -> Run:
+    """Put several runs together in a folder of their own, as ``suite merge`` does; they themselves are only read.
+
+    Args:
+        runs: Their folders.
+        out: A new or an empty folder.
+        keep_first: Where two have different rows for one trial by the same code, let that of the first stand.
+
+    Raises:
+        SuiteError: A run cannot be read, two are in conflict, or ``out`` holds something. Then nothing is written.
+    """
+    merge_runs([Path(run) for run in runs], Path(out), keep_first=keep_first)
+    return Run(out)
 
 
 class Conditions(TypedDict, total=False):

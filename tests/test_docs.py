@@ -115,3 +115,10 @@ def test_every_block_of_the_python_page_runs(folder: Path) -> None:
     said = [run(folder, "python", "-c", block.code) for block in blocks]  # the second reads what the first has run
     assert all(said)
     assert said[-1] == "stuck\n"
+
+
+def test_simple_setup_drives_a_planner_as_the_page_of_the_arbiter_shows(folder: Path) -> None:
+    page = (ROOT / "docs" / "arbiter.md").read_text(encoding="utf-8")
+    (block,) = blocks_of(page)
+    said = [line for line in run(folder, "python", "-c", block.code).splitlines() if not line.startswith("Info:")]
+    assert [line.split()[0] for line in said] == ["0", "1", "2", "3"]

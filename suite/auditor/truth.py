@@ -7,7 +7,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from scenarios import Line, Obstacle, Orbit, Scenario, Track, Wander
+from scenarios import Line, Obstacle, Orbit, Scenario, Still, Track, Wander
 from suite.auditor._kernels import SMOOTH, TRACK
 from suite.auditor.shapes import Bodies, pack_shapes
 
@@ -100,6 +100,8 @@ def pack_law(law: Law, end_s: float) -> _Packed:
         return _smooth(law.center_m, (0.0, 0.0, 0.0), _orbit(law))
     if isinstance(law, Line):
         return _smooth(law.point_m, law.velocity_m_s, np.empty((0, 7)))
+    if isinstance(law, Still):
+        return _smooth(law.point_m, (0.0, 0.0, 0.0), np.empty((0, 7)))
     if isinstance(law, Wander):
         return _smooth(law.center_m, (0.0, 0.0, 0.0), _wander(law))
     if isinstance(law, Track):

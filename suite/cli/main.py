@@ -20,6 +20,8 @@ from suite.cli.check import check
 from suite.cli.check_planner import check_planner
 from suite.cli.compare import compare
 from suite.cli.generate import generate
+from suite.cli.importing import importing
+from suite.cli.merge import merge
 from suite.cli.new_planner import new_planner
 from suite.cli.options import EXIT_INTERRUPTED, EXIT_USAGE, say
 from suite.cli.planners import planners
@@ -45,9 +47,10 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 for verb in (
-    run, table, compare, plot, generate, planners, new_planner, check_planner, predictors, check, audit, version,
+    run, table, compare, merge, plot, generate, planners, new_planner, check_planner, predictors, check, audit, version,
 ):  # fmt: skip
     app.command()(verb)
+app.add_typer(importing, name="import")
 
 
 @app.callback()

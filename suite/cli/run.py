@@ -73,6 +73,13 @@ def run(
     hang_limit_s: Annotated[
         float, typer.Option(help="A trial that takes longer is killed; a warm-up has 120 s at least.")
     ] = 300.0,
+    bounds: Annotated[
+        bool,
+        typer.Option("--bounds", help="Say what is possible: clairvoyant solves it, or a proof says that nobody can."),
+    ] = False,
+    open_effort: Annotated[
+        int, typer.Option(help="With --bounds: times clairvoyant's usual searches before a scenario stays open.")
+    ] = 1,
     out: Annotated[Path | None, typer.Option(help="Folder of the run. [default: results/NAME]")] = None,
     fresh: Annotated[bool, typer.Option("--fresh", help="Start over what the folder holds.")] = False,
     keep_stale: Annotated[
@@ -90,8 +97,11 @@ def run(
     """
     n_workers = within("--workers", cores() if workers is None else workers, 1, 1024)
     within("--hang-limit-s", hang_limit_s, 1, 1e6)
+    within("--open-effort", open_effort, 1, 1000)
     if fresh and keep_stale:
         raise usage("--keep-stale: found beside --fresh, allowed one of them")
+    if open_effort > 1 and not bounds:
+        raise usage("--open-effort: found without --bounds, allowed with it")
     fields = {
         "planners": planners,
         "family": family,
@@ -107,13 +117,18 @@ def run(
         "scenario_files": scenarios and tuple(map(str, scenarios)),
     }
     given = {name: value for name, value in fields.items() if value is not None}
+
+    def asked() -> Experiment:
+        experiment = experiment_of(preset, file, given)
+        return experiment.with_bound(open_effort) if bounds else experiment
+
     if dry_run:
-        _foretell(experiment_of(preset, file, given), file, out, n_workers, fresh=fresh, keep_stale=keep_stale)
+        _foretell(asked(), file, out, n_workers, fresh=fresh, keep_stale=keep_stale)
         return
     with Processes(n_workers) as processes:  # the first is on its way while this process imports what follows
         from suite.runner import RunInterrupted, run_experiment
 
-        experiment = experiment_of(preset, file, given)
+        experiment = asked()
         folder = out or _folder(experiment, file)
         try:
             summary = run_experiment(

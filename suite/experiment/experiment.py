@@ -24,7 +24,7 @@ from pydantic import (
     model_validator,
 )
 
-from planners import PREDICTORS, PlannerSpec, describe, label_of
+from planners import PREDICTORS, PlannerSpec, describe, label_of, parse_planner
 from scenarios import ContinuumArm, PackedScenarios, Scenario, drawn, load_scenarios
 from scenarios.families import parse_family
 from scenarios.spec import known_name
@@ -165,6 +165,16 @@ class Experiment(BaseModel):
         for field in ("family", "arm", "obstacles", *_SENSED, "seed"):
             _refuse_repeats(field, getattr(self, field))
         return self
+
+    def with_bound(self, effort: int = 1) -> Self:
+        """The same with ``clairvoyant`` among the planners, which says what is possible (docs/possible.md).
+
+        Args:
+            effort: How many times its usual number of searches it makes before it gives a scenario up.
+        """
+        usual: Any = parse_planner("clairvoyant").settings
+        spec = "clairvoyant" if effort == 1 else f"clairvoyant[restarts={effort * usual.restarts}]"
+        return self.model_copy(update={"planners": tuple(dict.fromkeys([*self.planners, spec]))})
 
     def specs(self) -> list[PlannerSpec]:
         """The planners, in the order they were asked for."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import io
 import json
+import sqlite3
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
@@ -21,6 +22,7 @@ from suite.trial.task import Code, TrialResult, TrialTask
 
 _NAMES = ", ".join(f'"{name}"' for name in COLUMN_NAMES)
 _SORTED = ", ".join(f'"{name}" NULLS LAST' for name in SORTED_BY)
+_LEAST_BYTES = 256  # of a row with its names, hashes and trajectory
 CHUNK = 2_000
 """Rows that are read together."""
 
@@ -36,6 +38,20 @@ class Executed(NamedTuple):
     """Shape (k, dof)."""
     conditions: Row
     """Under which conditions, by the names in ``CONDITIONS``."""
+
+
+class Stored(NamedTuple):
+    """One trial as it stands in a journal, whatever is asked for."""
+
+    key: str
+    row: Row
+    executed: bytes
+    traceback: str
+
+    @property
+    def code(self) -> Code:
+        """What made it."""
+        return Code(self.row["house_code"], self.row["planner_code"])
 
 
 class Journal:
@@ -69,11 +85,62 @@ class Journal:
             made.setdefault(key, []).append(Code(*code))
         return made
 
+    def stored(self, lost: list[int] | None = None) -> Iterator[Stored]:
+        """Every trial, in the order in which they finished, or those of a damaged journal that can be read.
+
+        Args:
+            lost: Takes the numbers of trials that cannot be read; such a trial is an error when None.
+
+        Raises:
+            SuiteError: A value is not of its column's type.
+            sqlite3.Error: The journal cannot be read.
+        """
+        query = f"SELECT key, {_NAMES}, executed, traceback FROM trials WHERE number = ?"
+        for number in range(1, self._last_number(lost) + 1):
+            try:
+                for key, *values, executed, traceback in self._db.execute(query, [number]):
+                    yield Stored(key, self._complete(values), executed, traceback)
+            except (sqlite3.DatabaseError, SuiteError):
+                if lost is None:
+                    raise
+                lost.append(number)
+
+    def _last_number(self, lost: list[int] | None) -> int:
+        """The last trial's number; where that cannot be read, as many as could stand in the file."""
+        try:
+            (last,) = self._db.execute("SELECT max(number) FROM trials").fetchone()
+            return int(last or 0)
+        except sqlite3.DatabaseError:
+            if lost is None:
+                raise
+            return self._file.stat().st_size // _LEAST_BYTES
+
+    def shown_codes(self) -> dict[str, Code]:
+        """Which code's row stands for each trial that is asked for and there, by the trial's key."""
+        selected = self._db.execute("SELECT key, house_code, planner_code FROM shown ORDER BY number")
+        return {key: Code(*code) for key, *code in selected}
+
+    def planners(self) -> Iterator[tuple[str, str, Code]]:
+        """Planner, key and code of every trial."""
+        for planner, key, *code in self._db.execute("SELECT planner, key, house_code, planner_code FROM trials"):
+            yield planner, key, Code(*code)
+
+    def keep(self, trials: Iterable[Stored], houses: Mapping[str, House]) -> None:
+        """Store trials of another journal; all or none."""
+        marks = ", ".join("?" * (len(COLUMNS) + 3))
+        with transaction(self._db):
+            for house in houses.values():
+                remember_house(self._db, house)
+            self._db.executemany(
+                f"INSERT INTO trials (key, {_NAMES}, executed, traceback) VALUES ({marks})",
+                ([one.key, *one.row.values(), one.executed, one.traceback] for one in trials),
+            )
+
     def houses(self) -> dict[str, House]:
         """What stands behind the hashes of houses."""
         return {code: json.loads(text) for code, text in self._db.execute("SELECT * FROM houses")}
 
-    def ask(self, chosen: Mapping[str, Code], house: House) -> None:
+    def ask(self, chosen: Mapping[str, Code], house: House | None) -> None:
         """Note what the present command asks for: keys of trials, and the code whose rows stand for them."""
         rows = [(position, key, *code) for position, (key, code) in enumerate(chosen.items())]
         with transaction(self._db):
@@ -119,10 +186,13 @@ class Journal:
             SuiteError: A value is not of its column's type.
         """
         for values in self._db.execute(f"SELECT {_NAMES} FROM shown"):
-            try:
-                yield complete_row(dict(zip(COLUMN_NAMES, values, strict=True)))
-            except (ValueError, TypeError) as error:
-                raise SuiteError(f"{self._file}: found a row with a value that fits no trial: {error}"[:300]) from None
+            yield self._complete(values)
+
+    def _complete(self, values: Sequence[Any]) -> Row:
+        try:
+            return complete_row(dict(zip(COLUMN_NAMES, values, strict=True)))
+        except (ValueError, TypeError) as error:
+            raise SuiteError(f"{self._file}: found a row with a value that fits no trial: {error}"[:300]) from None
 
     def columns(self, names: Sequence[str] = COLUMN_NAMES) -> Iterator[dict[str, list[Any]]]:
         """The rows that are asked for, sorted, some thousands at a time: the values of each column in ``names``.

@@ -86,7 +86,7 @@ def read_trials(folder: Path, names: Sequence[str] = COLUMN_NAMES) -> pd.DataFra
     """
     if (folder / JOURNAL).exists():
         try:
-            with Journal(folder / JOURNAL, read_only=True, old_house=_old_house(folder)) as journal:
+            with open_journal(folder) as journal:
                 return refuse_gaps(joined(map(columns_frame, journal.columns(names)), names), folder / JOURNAL)
         except (OSError, sqlite3.Error) as error:
             raise SuiteError(f"{folder / JOURNAL}: cannot be read: {error}"[:300]) from None
@@ -102,6 +102,18 @@ def read_table(folder: Path) -> pd.DataFrame:
     if not (folder / TABLE).exists():
         raise SuiteError(f"{folder}: found no {JOURNAL}, {TRIALS} or {TABLE}, allowed: the folder of a run")
     return read_table_csv(folder / TABLE)
+
+
+def open_journal(folder: Path) -> Journal:
+    """The journal of a run of any version, to read.
+
+    Raises:
+        SuiteError: There is none.
+        sqlite3.Error: It cannot be read.
+    """
+    if not (folder / JOURNAL).exists():
+        raise SuiteError(f"{folder}: found no {JOURNAL}, allowed: the folder of a run with its journal")
+    return Journal(folder / JOURNAL, read_only=True, old_house=_old_house(folder))
 
 
 @contextmanager

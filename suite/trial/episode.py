@@ -12,7 +12,7 @@ import numpy as np
 from planners import Failure, Observation, Plan, Session
 from scenarios import start_is_free
 from suite.auditor import Audit, audit, collides
-from suite.auditor.verdicts import contact_columns
+from suite.auditor.verdicts import Kind, contact_columns
 from suite.trial.execution import Execution, PathError, check_path
 from suite.trial.impossibility import impossibility
 from suite.trial.metrics import smoothness_bending_rad, smoothness_paper_rad, tip_path_length_m
@@ -51,8 +51,9 @@ def run_trial(task: TrialTask) -> TrialResult:
     audit_started = time.perf_counter()
     judged = audit(scenario, execution.times_s, execution.configurations_rad)
     audit_time_s = time.perf_counter() - audit_started
-    if execution.has_arrived:
-        outcome = "reached" if judged.per_step.success else "collided"
+    if execution.has_arrived:  # perhaps too late: within the step in which time runs out
+        late = judged.per_step.violation_kind == Kind.TIME_LIMIT
+        outcome = "reached" if judged.per_step.success else "timeout" if late else "collided"
     measured = {
         "outcome": outcome,
         "message": message,

@@ -50,6 +50,8 @@ class Observer:
         rng = np.random.default_rng(int.from_bytes(digest[:8], "big"))
         self._positions_m += rng.normal(scale=task.noise_mm / 1000.0, size=self._positions_m.shape)
         lost = rng.uniform(size=self._positions_m.shape[:2]) < task.dropout
+        for j, obstacle in enumerate(scenario.obstacles):
+            lost[:, j] |= obstacle.unseen(self._times_s)
         lost[0] = False  # every obstacle is seen once, so that there is something to go by
         self._positions_m[lost] = np.nan
 

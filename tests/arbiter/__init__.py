@@ -1,7 +1,6 @@
 """Whole trials both ways: with planners' kernels, and with every check asked of the shared checker and validator."""
 
 import json
-import math
 import os
 import subprocess
 import sys
@@ -13,8 +12,6 @@ from typing import Any, NamedTuple
 ROOT = Path(__file__).resolve().parents[2]
 OBSTACLES = (1, 3, 5, 6)
 PLANNERS = ("t3", "temporal-best", "h", "hs", "pf", "prm", "strrt", "temporal-ct")
-MEASURING = {"pf": 1e-6}
-"""Planners that go by distances, whose last bits differ: rows agree up to this share."""
 CAUTIOUS = {"temporal-ct": 0.001}
 """Planners that give up a motion which they cannot prove free soon, and on what share of motions at most."""
 
@@ -31,7 +28,7 @@ class BothWays(NamedTuple):
     asked: int
     """Questions that the planner's kernels decide themselves in a run, here put to checker and validator."""
     unsafe: int
-    """Motions free to the kernel alone."""
+    """Motions free to the kernel alone, or distances that are not the checker's."""
     cautious: int
     """Motions free to the validator alone."""
     allowed: float
@@ -66,8 +63,7 @@ def both_ways(
     else:
         with tempfile.TemporaryDirectory() as cache:  # kernels that ask must never be found by anybody else
             asked = _run({"SUITE_CACHE_DIR": cache}, "ask", *given)
-    tolerance = MEASURING.get(planner, 0.0)
-    different = sum(not _same(*rows, tolerance) for rows in zip(own["rows"], asked["rows"], strict=True))
+    different = sum(one != other for one, other in zip(own["rows"], asked["rows"], strict=True))
     solves = sum(row["n_solves"] or 0 for row in own["rows"])
     counts = (asked[name] for name in ("asked", "unsafe", "cautious"))
     return BothWays(len(own["rows"]), different, solves, own["through_ompl"], *counts, CAUTIOUS.get(planner, 0.0))
@@ -80,13 +76,3 @@ def _run(setting: Mapping[str, str], *arguments: str) -> dict[str, Any]:
         raise RuntimeError(f"{' '.join(arguments)}: {done.stderr[-2000:]}")
     answer: dict[str, Any] = json.loads(done.stdout)
     return answer
-
-
-def _same(one: Mapping[str, Any], other: Mapping[str, Any], tolerance: float) -> bool:
-    """Whether two rows are equal, numbers up to a share of themselves."""
-    return one.keys() == other.keys() and all(
-        math.isclose(value, other[name], rel_tol=tolerance, abs_tol=tolerance)
-        if isinstance(value, float) and isinstance(other[name], float)
-        else value == other[name]
-        for name, value in one.items()
-    )

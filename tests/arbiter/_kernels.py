@@ -70,7 +70,8 @@ def clearance(q, t, section_length, arm_radius, max_bend, world):
 
 @njit
 def nearest_on_body(q, section_length, arcs, center, point):
-    length, _ = own_nearest(q, section_length, arcs, center, point)
-    with numba.objmode(distance=types.float64):
-        distance = COURT.distance(q, center)
+    """No answer but a distance, and what follows from it is chaotic: it is compared, not replaced."""
+    length, distance = own_nearest(q, section_length, arcs, center, point)
+    with numba.objmode():
+        COURT.compare_distances(distance, q, center)
     return length, distance

@@ -12,6 +12,8 @@ from planners.search.scene import Scene
 from scenarios.arm import ContinuumArm, FloatArray
 from scenarios.world import SampledWorld
 
+DISTANCES_AGREE_M = 1e-9
+
 
 class Court:
     """Hands each question to the checker or validator that OMPL holds, about the world that the planner searches."""
@@ -81,12 +83,13 @@ class Court:
         self.asked += 1
         return gap
 
-    def distance(self, q: FloatArray, center_m: FloatArray) -> float:
-        """Distance of the backbone from a point [m], by the clearance from a sphere about it."""
-        arm = self._arm()
+    def compare_distances(self, own_m: float, q: FloatArray, center_m: FloatArray) -> None:
+        """Take note of a distance of the backbone from a point that is not the checker's, from a sphere about it."""
         here = np.broadcast_to(np.asarray(center_m), (2, 1, 3)).copy()
         world = SampledWorld(0.0, 1.0, here, np.zeros((2, 1)), 0.0)
-        return self.clearance(q, 0.0, world) + arm.radius_m
+        clearance = self.clearance(q, 0.0, world)
+        if clearance > -math.inf:  # within the bends
+            self.unsafe += abs(own_m - clearance - self._arm().radius_m) > DISTANCES_AGREE_M
 
     def is_motion_free(
         self,

@@ -1,9 +1,12 @@
+from unittest.mock import patch
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from planners import Observation, Session, parse_planner
+from planners.continuous import planner
 from planners.continuous._kernels import FAILURE_WEIGHT, near_node
 from planners.continuous.planner import FAR_S, NEAR_S, ContinuousPlanner, Found, TreePlanner
 from planners.continuous.workspace import Workspace, body_of
@@ -14,6 +17,7 @@ from scenarios import ContinuumArm, Obstacle, Orbit, Scenario, generate, make_wo
 from scenarios.kernels.clearance import clearances
 from scenarios.kernels.kinematics import section_arcs, tip_jacobian
 from scenarios.world import SampledWorld
+from suite import plan
 from suite.auditor import audit
 
 ARM = ContinuumArm()
@@ -327,3 +331,20 @@ def test_a_margin_that_a_run_asks_for_takes_the_place_of_its_own() -> None:
     ]
     assert [session._planner._margin for session in asked] == [0.5, 0.5, 2.0]
     assert [session._margin for session in asked] == [1.0, 0.5, 1.0]
+
+
+def test_the_bound_holds_nothing_back_in_the_end() -> None:
+    """A goal that can be reached in time at the arm's very rates only."""
+    scenario = generate("orbit", 0, 2, seed=1000)[1]
+    soonest_s = plan(scenario, "clairvoyant[refinements=2000]").times_s[-1]
+    hurried = f"clairvoyant[restarts=3,horizon_s={0.99 * soonest_s:.6f}]"
+    found = [plan(scenario, hurried, seed=seed) for seed in range(6)]
+    exact = [one for one in found if one.status == "Exact solution"]
+    assert exact
+    for one in exact:
+        assert audit(scenario, one.times_s, one.configurations_rad).executable.success
+    with (
+        patch.object(planner, "LAST_RATE_RESERVE", planner.RATE_RESERVE),
+        patch.object(planner, "LAST_GOAL_SHARE", planner.GOAL_SHARE),
+    ):
+        assert {plan(scenario, hurried, seed=seed).status for seed in range(6)} == {"Approximate solution"}

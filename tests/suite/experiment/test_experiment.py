@@ -173,3 +173,11 @@ def test_standard_1_is_known_by_its_scenarios() -> None:
     assert make_manifest(mine, scenarios)["standard"] == "standard-1"
     assert standard_of(mine, "0" * 16) == ("standard-1", False)
     assert standard_of(make_experiment(**PRESETS["standard-1"] | {"seed": 1}), scenarios.digest) is None
+
+
+def test_bounds_are_a_planner_more() -> None:
+    asked = make_experiment(planners=("pf",))
+    assert asked.with_bound().planners == ("pf", "clairvoyant")
+    assert asked.with_bound(5).planners == ("pf", "clairvoyant[restarts=100]")
+    assert asked.with_bound().with_bound() == asked.with_bound()
+    assert asked.with_bound().name == asked.name  # the run grows

@@ -225,6 +225,11 @@ def test_time_runs_out_on_an_arm_that_moves_or_is_stuck(run) -> None:
         assert run(Script("path", stops), scene(time_limit_s=15.0)).row["outcome"] == outcome
 
 
+def test_an_arrival_after_time_has_run_out_is_a_timeout_not_a_collision(run) -> None:
+    row = run(Script("path", arrive_after(4.9)), scene(time_limit_s=4.5)).row
+    assert (row["outcome"], row["violation_per_step_kind"]) == ("timeout", "time limit")
+
+
 def test_a_path_from_elsewhere_is_the_planners_error(run, monkeypatch) -> None:
     script = Script("path", wander)
     told = script.plan

@@ -1,0 +1,1 @@
+"""In and out: recordings and scenes from elsewhere as scenarios, runs as files that other tools read."""
