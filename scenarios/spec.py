@@ -7,12 +7,14 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
+from scenarios.errors import UserError
+
 _Settings = TypeVar("_Settings", bound=BaseModel)
 _NAME = re.compile(r"[^\s\[\],=][^\[\],=]*")
 
 
-class SpecError(ValueError):
-    """A spec cannot be read or names something unknown; the message is one line and lists what is known."""
+class SpecError(UserError):
+    """A spec cannot be read or names something unknown; the message lists what is known."""
 
 
 def split_specs(text: str) -> list[str]:

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
+from suite.backends.memory import CAN_BE_MEASURED
 from suite.backends.processes import Processes
+from suite.cli.cores import cores
 from suite.cli.options import (
     EXIT_INTERRUPTED,
     Arm,
@@ -17,7 +19,6 @@ from suite.cli.options import (
     Seeds,
     Trials,
     complete_planners,
-    cores,
     experiment_of,
     names,
     numbers,
@@ -73,6 +74,9 @@ def run(
     hang_limit_s: Annotated[
         float, typer.Option(help="A trial that takes longer is killed; a warm-up has 120 s at least.")
     ] = 300.0,
+    memory_limit_mb: Annotated[
+        float | None, typer.Option(help="A trial that takes more memory is killed. [default: no limit]")
+    ] = None,
     bounds: Annotated[
         bool,
         typer.Option("--bounds", help="Say what is possible: clairvoyant solves it, or a proof says that nobody can."),
@@ -97,6 +101,10 @@ def run(
     """
     n_workers = within("--workers", cores() if workers is None else workers, 1, 1024)
     within("--hang-limit-s", hang_limit_s, 1, 1e6)
+    if memory_limit_mb is not None:
+        if not CAN_BE_MEASURED:
+            raise usage("--memory-limit-mb: found it on a system that does not tell, allowed on Linux")
+        within("--memory-limit-mb", memory_limit_mb, 1, 1e9)
     within("--open-effort", open_effort, 1, 1000)
     if fresh and keep_stale:
         raise usage("--keep-stale: found beside --fresh, allowed one of them")
@@ -126,6 +134,7 @@ def run(
         _foretell(asked(), file, out, n_workers, fresh=fresh, keep_stale=keep_stale)
         return
     with Processes(n_workers) as processes:  # the first is on its way while this process imports what follows
+        from suite.backends.job import Limits
         from suite.runner import RunInterrupted, run_experiment
 
         experiment = asked()
@@ -135,7 +144,7 @@ def run(
                 experiment,
                 folder,
                 workers=processes,
-                hang_limit_s=hang_limit_s,
+                limits=Limits(hang_limit_s, memory_limit_mb),
                 fresh=fresh,
                 keep_stale=keep_stale,
                 quiet=quiet,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from scenarios import reading
 from suite.errors import SuiteError
 
 MAX_FILE_BYTES = 256 * 1024 * 1024
@@ -13,27 +14,19 @@ def read_bytes(file: Path) -> bytes:
     """The whole of a file.
 
     Raises:
-        SuiteError: It cannot be read, or is larger than ``MAX_FILE_BYTES``.
+        FileError: It cannot be read, is no regular file, or is larger than ``MAX_FILE_BYTES``.
     """
-    try:
-        size = file.stat().st_size
-        if size > MAX_FILE_BYTES:
-            raise SuiteError(f"{file}: found {size} bytes, allowed {MAX_FILE_BYTES}")
-        return file.read_bytes()
-    except (OSError, ValueError) as error:
-        raise SuiteError(f"{file}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
+    with reading.open_regular(file, MAX_FILE_BYTES) as handle:
+        return handle.read(MAX_FILE_BYTES)
 
 
 def read_text(file: Path) -> str:
     """The whole of a file, as UTF-8 text.
 
     Raises:
-        SuiteError: As ``read_bytes``, or it is no such text.
+        FileError: As ``read_bytes``, or it is no such text.
     """
-    try:
-        return read_bytes(file).decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise SuiteError(f"{file}: found bytes that are not UTF-8, allowed UTF-8 text") from None
+    return reading.read_text(file, MAX_FILE_BYTES)
 
 
 def number(where: str, text: str) -> float:

@@ -16,6 +16,8 @@ from suite.trial.columns import SCHEMA_VERSION
 
 Manifest = dict[str, Any]
 
+MAX_MANIFEST_BYTES = 64 * 1024 * 1024
+
 
 def make_manifest(experiment: Experiment, scenarios: PackedScenarios) -> Manifest:
     """Describe what the latest command runs: experiment, scenarios, sources, versions, code and machine."""

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from suite.errors import SuiteError
-from suite.experiment.code import House
+from suite.experiment.code import House, is_house
 from suite.store.schema import open_to_read, open_to_write, remember_house, transaction
 from suite.trial.columns import COLUMN_NAMES, COLUMNS, CONDITIONS, SORTED_BY, Row, complete_row, plain_values
 from suite.trial.task import Code, TrialResult, TrialTask
@@ -69,6 +69,7 @@ class Journal:
         """
         self._file = file
         self._db = (open_to_read if read_only else open_to_write)(file, old_house)
+        self._inode = file.stat().st_ino
 
     def __enter__(self) -> Self:
         return self
@@ -138,7 +139,8 @@ class Journal:
 
     def houses(self) -> dict[str, House]:
         """What stands behind the hashes of houses."""
-        return {code: json.loads(text) for code, text in self._db.execute("SELECT * FROM houses")}
+        described = {code: json.loads(text) for code, text in self._db.execute("SELECT * FROM houses")}
+        return {code: house for code, house in described.items() if is_house(house)}
 
     def ask(self, chosen: Mapping[str, Code], house: House | None) -> None:
         """Note what the present command asks for: keys of trials, and the code whose rows stand for them."""
@@ -172,7 +174,14 @@ class Journal:
         return digest.hexdigest()[:16]
 
     def add(self, task: TrialTask, result: TrialResult) -> None:
-        """Store one finished trial."""
+        """Store one finished trial.
+
+        Raises:
+            SuiteError: The file has been deleted: what is written into it now will be lost.
+            sqlite3.Error: It cannot be written, as on a full disk.
+        """
+        if not (self._file.exists() and self._file.stat().st_ino == self._inode):
+            raise SuiteError(f"{self._file}: found it deleted or replaced while the run went on, allowed to stay")
         row = complete_row(result.row)
         assert all(row[name] == value for name, value in task.identity.items())
         marks = ", ".join("?" * (len(COLUMNS) + 3))

@@ -3,7 +3,7 @@ import json
 import pytest
 from fakes import fake_spec, make_scenario
 
-from scenarios import SpecError, save_scenarios
+from scenarios import SpecError, UserError, save_scenarios
 from suite.errors import SuiteError
 from suite.experiment.code import house, house_code
 from suite.experiment.experiment import make_experiment
@@ -156,7 +156,7 @@ def test_a_manifest_reruns_its_experiment(tmp_path) -> None:
 def test_a_file_without_an_experiment_is_no_preset(tmp_path, text: str) -> None:
     file = tmp_path / "manifest.json"
     file.write_text(text)
-    with pytest.raises(ValueError, match=r"manifest\.json: (found no experiment|not valid JSON)"):
+    with pytest.raises(UserError, match=r"manifest\.json: (found no experiment|not valid JSON)"):
         preset_fields(str(file))
 
 
