@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from scenarios import PackedScenarios, Scenario, ScenarioError, load_scenarios
+from scenarios import FileError, PackedScenarios, Scenario, ScenarioError, load_scenarios
 from suite.errors import SuiteError
 from suite.experiment.experiment import make_experiment
 from suite.experiment.manifest import Manifest
@@ -135,7 +135,7 @@ def _of_run(folder: Path, manifest: Manifest) -> list[Scenario]:
     """All of a run's scenarios; an unfinished run has not written them yet."""
     try:
         return load_scenarios(folder / "scenarios.jsonl")
-    except ScenarioError:
+    except (FileError, ScenarioError):
         try:
             return list(make_experiment(**manifest.get("experiment", {})).scenarios())
         except (ValueError, TypeError):

@@ -43,7 +43,7 @@ def run_experiment(
     experiment: Experiment,
     folder: Path,
     *,
-    workers: int | Processes,
+    workers: int | Backend,
     limits: Limits = USUAL_LIMITS,
     fresh: bool = False,
     keep_stale: bool = False,
@@ -54,8 +54,8 @@ def run_experiment(
     Args:
         experiment: What to run.
         folder: Where the run lives; one that is there goes on, and grows by what is new.
-        workers: Number of worker processes, or those that were started ahead; 0 runs the trials in this process, where
-            nobody can kill a planner that hangs.
+        workers: Number of worker processes, or those that were started ahead, or a cluster; 0 runs the trials in this
+            process, where nobody can kill a planner that hangs.
         limits: What a trial may take in a worker process.
         fresh: Start over, whatever an earlier run has left in the folder.
         keep_stale: Use rows that other code has made as they are.
@@ -86,9 +86,15 @@ def run_experiment(
         threading.Thread(target=importlib.import_module, args=["suite.show.derived"], daemon=True).start()
         try:
             if standing.left:
-                parts = warm_up_parts(task for task in standing.examples.values() if not task.spec.failure)
-                warm_up_limit_s = max(LEAST_WARM_UP_S, limits.hang_s)
-                job = Job(run_trial, limits.hang_s, parts, warm_up_limit_s, limits.memory_mb)
+                examples = [task for task in standing.examples.values() if not task.spec.failure]
+                job = Job(
+                    run_trial,
+                    limits.hang_s,
+                    warm_up_parts(examples),
+                    max(LEAST_WARM_UP_S, limits.hang_s),
+                    limits.memory_mb,
+                    examples,
+                )
                 _run(job, tasks.at(standing.left), journal, workers, quiet=quiet)
             from suite.show.derived import write_derived
 
@@ -105,7 +111,7 @@ def run_experiment(
             ) from None
 
 
-def _run(job: Job, tasks: Tasks, journal: Journal, workers: int | Processes, *, quiet: bool) -> None:
+def _run(job: Job, tasks: Tasks, journal: Journal, workers: int | Backend, *, quiet: bool) -> None:
     """Run every task and store each result as it comes."""
     backend: Backend = InProcess() if workers == 0 else Processes(workers) if isinstance(workers, int) else workers
     with progress(len(tasks), quiet=quiet) as report, closing(backend.run(job, tasks, report.warm_up)) as finished:

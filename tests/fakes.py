@@ -128,6 +128,18 @@ def behave(task: TrialTask) -> TrialResult:
     return TrialResult(trial_row(task, measured), np.arange(3.0), rng.normal(size=(3, 6)))
 
 
+def behave_slowly(task: TrialTask) -> TrialResult:
+    """The same in some time."""
+    time.sleep(0.05)
+    return behave(task)
+
+
+def behave_and_tell(task: TrialTask) -> TrialResult:
+    """The same; in the message, which process did it."""
+    result = behave(task)
+    return result._replace(row=result.row | {"message": str(os.getpid())})
+
+
 def heavy_imports(task: TrialTask) -> TrialResult:
     """In the message: what this process has imported without need."""
     heavy = ("pandas", "rich", "typer", "tabulate", "scipy.stats", "scipy.interpolate", "scipy.spatial", "networkx")

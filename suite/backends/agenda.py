@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Collection, Iterator
+from itertools import chain
 
 from planners.failure import Failure
 from suite.backends.job import Job, Part
@@ -32,7 +33,7 @@ class Agenda:
     def __init__(self, job: Job, tasks: Tasks) -> None:
         """Plan ``tasks``, in this order; they are taken one by one, as they are needed."""
         self._job = job
-        self._coming = iter(tasks)
+        self._coming: Iterator[TrialTask] = iter(tasks)
         self._aside: dict[str, deque[TrialTask]] = {HOUSE: deque()}
         self._held: dict[str, list[TrialTask]] = {}
         self._not_begun = deque(job.parts)
@@ -42,6 +43,11 @@ class Agenda:
         self._results: list[tuple[TrialTask, TrialResult]] = []
         self.n_open = len(tasks)
         """Tasks that have no result yet."""
+
+    def add(self, tasks: Tasks) -> None:
+        """Plan more, after all others."""
+        self._coming = chain(self._coming, tasks)
+        self.n_open += len(tasks)
 
     @property
     def not_begun(self) -> list[Part]:

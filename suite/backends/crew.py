@@ -58,20 +58,25 @@ class Crew:
         self._failed_starts = 0
 
     def run(self) -> Generator[tuple[TrialTask, TrialResult], None, None]:
-        """Yield every task with its result as it finishes; closing the iterator early kills the workers."""
+        """Yield every task with its result as it finishes; afterwards there may be more to ``add`` and to run."""
         agenda = self._agenda
-        try:
-            while agenda.n_open:
-                self._hand_out()
-                self._tell()
-                yield from agenda.results()  # workers have gone on: the caller may take its time to store them
-                if agenda.n_open:
-                    for worker in self._due():
-                        self._settle(worker)
-            yield from agenda.results()
-        finally:
-            for worker in self._crew:
-                worker.process.kill()
+        while agenda.n_open:
+            self._hand_out()
+            self._tell()
+            yield from agenda.results()  # workers have gone on: the caller may take its time to store them
+            if agenda.n_open:
+                for worker in self._due():
+                    self._settle(worker)
+        yield from agenda.results()
+
+    def add(self, tasks: Tasks) -> None:
+        """Have more tasks run, by workers that are warm."""
+        self._agenda.add(tasks)
+
+    def close(self) -> None:
+        """Kill the workers, whatever they are at."""
+        for worker in self._crew:
+            worker.process.kill()
 
     def _hand_out(self) -> None:
         """Give every worker that is at nothing something to do, and start more while there are tasks for them."""

@@ -60,6 +60,8 @@ class Job:
     """A part that takes longer is killed and its planner's trials become ``planner_hung`` [s]."""
     memory_limit_mb: float | None = None
     """A task that takes more than its process had before is killed and becomes ``planner_memory`` [MB]."""
+    examples: Sequence[TrialTask] = ()
+    """A task of every kind that is to run, from which the parts were made; other machines make them anew."""
 
     def needed_by(self, task: TrialTask) -> list[Part]:
         """What a process has to have warmed up before ``task``."""

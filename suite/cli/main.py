@@ -30,6 +30,7 @@ from suite.cli.planners import planners
 from suite.cli.plot import plot
 from suite.cli.predictors import predictors
 from suite.cli.run import run
+from suite.cli.show import show
 from suite.cli.table import table
 from suite.cli.version import version
 
@@ -49,8 +50,8 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 for verb in (
-    run, table, compare, merge, export, plot, generate, planners, new_planner, check_planner, predictors, check, audit,
-    version,
+    run, table, show, compare, plot, merge, export, generate,
+    planners, new_planner, check_planner, predictors, check, audit, version,
 ):  # fmt: skip
     app.command()(verb)
 app.add_typer(importing, name="import")

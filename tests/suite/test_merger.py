@@ -55,7 +55,7 @@ def test_seeds_stay_apart_and_scenarios_come_along() -> None:
 
 def test_the_same_run_from_two_machines_is_one(capfd) -> None:
     run_with_fakes(Path("here"))
-    run_with_fakes(Path("there"), in_processes=True)  # other timings, in another order
+    run_with_fakes(Path("there"), where=2)  # other timings, in another order
     suite.merge(["here", "there"], "merged")
     assert contents(Path("merged")) == contents(Path("here"))
     assert "there: found no trial that the runs named before do not have" in capfd.readouterr().err
