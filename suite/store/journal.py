@@ -231,12 +231,26 @@ class Journal:
         numbers = self._db.execute(f"SELECT number FROM shown ORDER BY {_SORTED}").fetchall()
         for number in numbers:
             scenario_id, planner, blob, *values = self._db.execute(row, number).fetchone()
-            try:
-                timed = np.load(io.BytesIO(blob), allow_pickle=False)
-                conditions = dict(zip(names, values, strict=True))
-                yield Executed(scenario_id, planner, timed[:, 0], timed[:, 1:], conditions)
-            except (ValueError, TypeError, EOFError, IndexError):
-                raise SuiteError(f"{self._file}: {scenario_id} {planner}: found no trajectory in it") from None
+            yield self._executed(scenario_id, planner, blob, dict(zip(names, values, strict=True)))
+
+    def trials_of(self, scenario_id: str) -> Iterator[tuple[Row, Executed]]:
+        """Rows of one scenario that are asked for, with what was executed, sorted as in the tables.
+
+        Raises:
+            SuiteError: A value is not of its column's type, or what is stored is no trajectory.
+        """
+        wanted = f"SELECT {_NAMES}, executed FROM shown WHERE scenario_id = ? ORDER BY {_SORTED}"
+        for *values, blob in self._db.execute(wanted, [scenario_id]):
+            row = self._complete(values)
+            conditions = {column.name: row[column.name] for column in CONDITIONS}
+            yield row, self._executed(row["scenario_id"], row["planner"], blob, conditions)
+
+    def _executed(self, scenario_id: str, planner: str, blob: bytes, conditions: Row) -> Executed:
+        try:
+            timed = np.load(io.BytesIO(blob), allow_pickle=False)
+            return Executed(scenario_id, planner, timed[:, 0], timed[:, 1:], conditions)
+        except (ValueError, TypeError, EOFError, IndexError):
+            raise SuiteError(f"{self._file}: {scenario_id} {planner}: found no trajectory in it") from None
 
 
 def _to_bytes(result: TrialResult) -> bytes:
