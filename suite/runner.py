@@ -18,6 +18,7 @@ from suite.backends.warm_up import warm_up_parts
 from suite.errors import SuiteError
 from suite.experiment.experiment import Experiment
 from suite.experiment.manifest import make_manifest
+from suite.experiment.presets import standard_of
 from suite.progress import note, progress
 from suite.store.journal import Journal
 from suite.store.run_folder import open_run, read_table
@@ -75,6 +76,9 @@ def run_experiment(
         check_fit(experiment.specs(), arm)
     tasks = Lineup(partial(experiment.tasks, scenarios), range(experiment.count(len(scenarios))))
     manifest = make_manifest(experiment, scenarios)
+    standard = standard_of(experiment, scenarios.digest)
+    if standard and not standard.is_met:
+        note(f"scenarios {scenarios.digest} are not those of {standard.name}: another machine or suite draws otherwise")
     with open_run(folder, manifest, tasks, fresh=fresh, keep_stale=keep_stale) as (journal, standing):
         for line in [] if quiet else standing.notes():
             note(line)

@@ -11,6 +11,7 @@ import signal
 import sys
 from collections.abc import Sequence
 from types import FrameType
+from typing import Annotated
 
 import typer
 from typer.exceptions import TyperException
@@ -34,10 +35,20 @@ from suite.cli.show import show
 from suite.cli.table import table
 from suite.cli.version import version
 
+
+def _print_version(asked: bool) -> None:
+    if asked:
+        from suite.experiment.code import DISTRIBUTION, installed
+
+        print(f"{DISTRIBUTION} {installed(DISTRIBUTION) or 'not installed'}")
+        raise typer.Exit
+
+
 app = typer.Typer(
     help="Compare motion planners for continuum arms among moving obstacles.",
     rich_markup_mode=None,  # rich help would double the time of --help
     pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
 )
 for verb in (
     run, table, show, report, compare, plot, merge, export, generate,
@@ -45,6 +56,15 @@ for verb in (
 ):  # fmt: skip
     app.command()(verb)
 app.add_typer(importing, name="import")
+
+
+@app.callback()
+def _every(
+    version: Annotated[
+        bool, typer.Option("--version", is_eager=True, callback=_print_version, help="Show the version and exit.")
+    ] = False,
+) -> None:
+    """What every command may be preceded by."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -70,6 +70,16 @@ def names(text: str) -> tuple[str, ...]:
     return tuple(part.strip() for part in text.split(",") if part.strip())
 
 
+def complete_planners(incomplete: str) -> list[str]:
+    """Lists of planners that begin with what was typed: the last name is completed, those before it stay."""
+    from planners import ALIASES, PLANNERS, ompl_planners, plugins
+
+    before, comma, begun = incomplete.rpartition(",")
+    taken = set(before.split(","))
+    names = [*PLANNERS, *ALIASES, *ompl_planners(), *plugins.offered()]
+    return [f"{before}{comma}{name}" for name in names if name.startswith(begun) and name not in taken]
+
+
 def within(option: str, value: _Number, low: float, high: float) -> _Number:
     """Return ``value`` if it is within the limits of its option."""
     if not low <= value <= high:

@@ -19,6 +19,7 @@ from suite.cli.options import (
     Quiet,
     Seeds,
     Trials,
+    complete_planners,
     experiment_of,
     names,
     numbers,
@@ -37,7 +38,11 @@ def run(
         Path | None, typer.Argument(help="Experiment file (.yaml, .json), or the manifest.json of a run.")
     ] = None,
     planners: Annotated[
-        str | None, typer.Option(help="Planners, such as 'temporal[horizon=3],rrt,pf'; see 'suite planners'.")
+        str | None,
+        typer.Option(
+            help="Planners, such as 'temporal[horizon=3],rrt,pf'; see 'suite planners'.",
+            autocompletion=complete_planners,
+        ),
     ] = None,
     preset: Annotated[
         str | None, typer.Option(help="Start from a named experiment (table1) or the manifest.json of a run.")
