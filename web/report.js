@@ -24,7 +24,7 @@ export async function report(place, data) {
   const show = (verdict) => {
     parts.headline.textContent = data.headlines[verdict];
     parts.table.replaceChildren(mainTable(data, verdict));
-    parts.curves.replaceChildren(...data.curves.flatMap(({ over, panels }) => panels[verdict].slice(0, 12).map(({ title, lines }) => curvePanel(title, over, lines, data.planners))));
+    parts.curves.replaceChildren(...data.curves.flatMap(({ over, panels }) => (panels[verdict] ?? []).slice(0, 12).map(({ title, lines }) => curvePanel(title, over, lines, data.planners))));
     parts.failures.replaceChildren(...failureParts(data, verdict));
     parts.pairs.replaceChildren(pairTable(data, verdict));
     trials.judge(verdict);

@@ -98,7 +98,8 @@ def all_curves(trials: pd.DataFrame, planners: Sequence[str]) -> list[dict[str, 
 
 
 def _curves(trials: pd.DataFrame, over: str, planners: Sequence[str]) -> dict[str, Any]:
-    found = {verdict: curves(trials, over, verdict, None, planners) for verdict in VERDICTS}
+    judged = [verdict for verdict in VERDICTS if trials[f"success_{verdict}"].notna().any()]
+    found = {verdict: curves(trials, over, verdict, None, planners) for verdict in judged}
     return {
         "over": axis_label(over),
         "panels": {
@@ -138,13 +139,12 @@ def failures(trials: pd.DataFrame, planners: Sequence[str]) -> list[dict[str, An
     for planner in planners:
         theirs = trials[trials["planner"] == planner]
         program = theirs["outcome"].where(theirs["outcome"].isin(["planner_error", "planner_hung", "worker_lost"]))
-        kinds = {
-            verdict: theirs[f"violation_{verdict}_kind"]
-            .fillna(program)
-            .fillna("not said")[~theirs[f"success_{verdict}"].fillna(False).astype(bool)]
-            .value_counts()
-            for verdict in VERDICTS
-        }
+        kinds = {}
+        for verdict in VERDICTS:
+            failed = ~theirs[f"success_{verdict}"].fillna(True).astype(bool)  # what was not judged is no failure
+            kinds[verdict] = (
+                theirs[f"violation_{verdict}_kind"].fillna(program).fillna("not said")[failed].value_counts()
+            )
         touched = theirs.dropna(subset=["contact_section"])
         how = "section " + touched["contact_section"].astype(str) + ", arm " + touched["contact_while"].fillna("?")
         said.append(
@@ -167,6 +167,8 @@ def pairs(trials: pd.DataFrame) -> dict[str, list[dict[str, Any]]]:
     for verdict in VERDICTS:
         for reference in competitors:
             found = compare_in_pairs(trials, reference, verdict)
+            if found.empty:
+                continue
             varied = [name for name in varying(found) if name in _WORLD_NAMES]
             for row in found.itertuples(index=False):
                 place = [f"{row.n_obstacles} obstacles", *(f"{name} {getattr(row, name)}" for name in varied)]

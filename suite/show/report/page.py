@@ -11,7 +11,7 @@ from suite.auditor.verdicts import VERDICTS
 from suite.compare.tables import summarize
 from suite.errors import SuiteError
 from suite.show.conditions import sentence
-from suite.show.page import as_json, page
+from suite.show.page import page
 from suite.show.report.data import all_curves, entries, entry_of, failures, headline, pairs, plain, times
 from suite.show.report.episodes import disagreement, episodes
 from suite.show.text import NOTES
@@ -19,7 +19,6 @@ from suite.store.run_folder import planner_order, present_codes, read_manifest, 
 
 MOST_BYTES = 8_000_000
 """What a report may take, replays included."""
-_SCRIPT_BYTES = 700_000
 MAX_LISTED = 20_000
 """Trials in the list of a report; of a larger run those on which planners disagree, then those that failed."""
 
@@ -51,10 +50,11 @@ def report_page(folder: Path, most_bytes: int = MOST_BYTES) -> str:
         "pairs": pairs(trials),
         "trials": _listed(trials, summary),
         "count": len(trials),
+        "episodes": {},
     }
-    left = most_bytes - _SCRIPT_BYTES - len(as_json(data))
-    data["episodes"] = episodes(folder, trials, left)
-    return page(f"{folder.name}: report", data)
+    title = f"{folder.name}: report"
+    left = most_bytes - len(page(title, data).encode())
+    return page(title, data | {"episodes": episodes(folder, trials, left)})
 
 
 def _listed(trials: pd.DataFrame, summary: pd.DataFrame) -> dict[str, list[Any]]:
