@@ -147,13 +147,13 @@ def read_columns(file: Path, types: Mapping[str, str]) -> pd.DataFrame:
         if twice is not None:
             raise FileError(f"{file}: found the column {twice!r} twice, allowed once")
         with warnings.catch_warnings():
-            warnings.simplefilter("error", pd.errors.ParserWarning)  # lines that are too long would be cut
+            warnings.simplefilter("error")  # lines that are too long, or whole numbers, would be cut
             return pd.read_csv(
                 io.StringIO(text), dtype=dict(types), keep_default_na=False, na_values=[""], index_col=False
             )
     except FileError:
         raise
-    except (csv.Error, ValueError, TypeError, OverflowError, pd.errors.ParserWarning) as error:
+    except (csv.Error, ValueError, TypeError, OverflowError, Warning) as error:
         raise unreadable(file, error) from None
 
 
