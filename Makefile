@@ -10,7 +10,7 @@ BIN := $(VENV)/bin
 RUNNABLE := $(VENV)/.runnable
 TESTABLE := $(VENV)/.testable
 
-.PHONY: run test mutants bench lint lock bundle clean
+.PHONY: run test mutants faults fuzz bench lint lock bundle clean
 
 run: $(RUNNABLE)
 	$(BIN)/suite run --planners temporal,rrt,pf
@@ -20,6 +20,12 @@ test: $(TESTABLE)
 
 mutants: $(TESTABLE)
 	$(BIN)/python -m tests.mutants $(MUTANTS)
+
+faults: $(TESTABLE)
+	$(BIN)/python -m tests.faults
+
+fuzz: $(TESTABLE)
+	$(BIN)/python -m tests.fuzz
 
 bench: $(TESTABLE)
 	$(BIN)/python -m benchmarks $(BENCH)

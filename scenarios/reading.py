@@ -27,18 +27,16 @@ def open_regular(file: Path, most_bytes: int) -> BinaryIO:
     """
     try:
         # A pipe that nobody writes to would be waited for.
-        handle = os.fdopen(os.open(file, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC), "rb")
+        handle = os.open(file, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
     except (OSError, ValueError) as error:  # ValueError: a name with a NUL, or with half a character
         raise unreadable(file, error) from None
-    found = os.fstat(handle.fileno())
-    if not stat.S_ISREG(found.st_mode):
-        problem = f"{file}: found {_kind(found.st_mode)}, allowed a file"
-    elif found.st_size > most_bytes:
-        problem = f"{file}: found {found.st_size} bytes, allowed {most_bytes}"
-    else:
-        return handle
-    handle.close()
-    raise FileError(problem)
+    found = os.fstat(handle)
+    if stat.S_ISREG(found.st_mode) and found.st_size <= most_bytes:
+        return os.fdopen(handle, "rb")
+    os.close(handle)
+    if stat.S_ISREG(found.st_mode):
+        raise FileError(f"{file}: found {found.st_size} bytes, allowed {most_bytes}")
+    raise FileError(f"{file}: found {_kind(found.st_mode)}, allowed a file")
 
 
 def read_text(file: Path, most_bytes: int) -> str:

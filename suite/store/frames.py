@@ -67,7 +67,9 @@ def trials_frame(rows: Iterable[Row]) -> pd.DataFrame:
 
 def columns_frame(columns: Mapping[str, Sequence[Any]]) -> pd.DataFrame:
     """The same of rows that come as columns, in the order in which they come."""
-    return pd.DataFrame({name: pd.Series(_as_written(columns[name]), dtype=_DTYPES[name]) for name in columns})
+    return pd.DataFrame(
+        {name: pd.Series(_as_written(_DTYPES[name], columns[name]), dtype=_DTYPES[name]) for name in columns}
+    )
 
 
 def joined(frames: Iterable[pd.DataFrame], names: Sequence[str]) -> pd.DataFrame:
@@ -75,11 +77,11 @@ def joined(frames: Iterable[pd.DataFrame], names: Sequence[str]) -> pd.DataFrame
     return pd.concat([columns_frame(dict.fromkeys(names, ())), *frames], ignore_index=True)
 
 
-def _as_written(values: Iterable[Any]) -> list[Any]:
+def _as_written(dtype: str, values: Sequence[Any]) -> Sequence[Any]:
     """Numbers rounded; names and settings, which repeat in thousands of rows, each held once."""
-    return [
-        float(FLOAT_FORMAT % v) if isinstance(v, float) else sys.intern(v) if isinstance(v, str) else v for v in values
-    ]
+    if dtype == "float64":
+        return [None if value is None else float(FLOAT_FORMAT % value) for value in values]
+    return [None if value is None else sys.intern(value) for value in values] if dtype == "string" else values
 
 
 def trials_csv(trials: pd.DataFrame, *, header: bool = True) -> str:
@@ -145,13 +147,13 @@ def read_columns(file: Path, types: Mapping[str, str]) -> pd.DataFrame:
         if twice is not None:
             raise FileError(f"{file}: found the column {twice!r} twice, allowed once")
         with warnings.catch_warnings():
-            warnings.simplefilter("error", pd.errors.ParserWarning)  # lines that are too long would be cut
+            warnings.simplefilter("error")  # lines that are too long, or whole numbers, would be cut
             return pd.read_csv(
                 io.StringIO(text), dtype=dict(types), keep_default_na=False, na_values=[""], index_col=False
             )
     except FileError:
         raise
-    except (csv.Error, ValueError, TypeError, OverflowError, pd.errors.ParserWarning) as error:
+    except (csv.Error, ValueError, TypeError, OverflowError, Warning) as error:
         raise unreadable(file, error) from None
 
 

@@ -5,8 +5,10 @@ from __future__ import annotations
 import hashlib
 import io
 import json
+import re
 import sqlite3
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Any, NamedTuple, Self
@@ -20,6 +22,7 @@ from suite.store.schema import open_to_read, open_to_write, remember_house, tran
 from suite.trial.columns import COLUMN_NAMES, COLUMNS, CONDITIONS, SORTED_BY, Row, complete_row, plain_values
 from suite.trial.task import Code, TrialResult, TrialTask
 
+_HEADER = re.compile(rb"\{'descr': '<f8', 'fortran_order': (True|False), 'shape': \((\d{1,9}), (\d{1,9})\), \}")
 _NAMES = ", ".join(f'"{name}"' for name in COLUMN_NAMES)
 _SORTED = ", ".join(f'"{name}" NULLS LAST' for name in SORTED_BY)
 _LEAST_BYTES = 256  # of a row with its names, hashes and trajectory
@@ -139,8 +142,11 @@ class Journal:
 
     def houses(self) -> dict[str, House]:
         """What stands behind the hashes of houses."""
-        described = {code: json.loads(text) for code, text in self._db.execute("SELECT * FROM houses")}
-        return {code: house for code, house in described.items() if is_house(house)}
+        houses = {}
+        for code, text in self._db.execute("SELECT * FROM houses"):
+            with suppress(ValueError, TypeError, RecursionError):  # damaged: nobody knows what it was
+                houses[code] = json.loads(text)
+        return {code: house for code, house in houses.items() if is_house(house)}
 
     def ask(self, chosen: Mapping[str, Code], house: House | None) -> None:
         """Note what the present command asks for: keys of trials, and the code whose rows stand for them."""
@@ -247,7 +253,7 @@ class Journal:
 
     def _executed(self, scenario_id: str, planner: str, blob: bytes, conditions: Row) -> Executed:
         try:
-            timed = np.load(io.BytesIO(blob), allow_pickle=False)
+            timed = _from_bytes(blob)
             return Executed(scenario_id, planner, timed[:, 0], timed[:, 1:], conditions)
         except (ValueError, TypeError, EOFError, IndexError):
             raise SuiteError(f"{self._file}: {scenario_id} {planner}: found no trajectory in it") from None
@@ -259,3 +265,17 @@ def _to_bytes(result: TrialResult) -> bytes:
     timed = np.column_stack([result.times_s, result.configurations_rad])
     np.save(buffer, timed.astype(np.float64), allow_pickle=False)
     return buffer.getvalue()
+
+
+def _from_bytes(blob: bytes) -> NDArray[np.float64]:
+    """The same again; by hand, since what NumPy raises over a damaged header, or allocates for it, knows no bounds.
+
+    Raises:
+        ValueError, TypeError: It is something else.
+    """
+    start = 10 + int.from_bytes(blob[8:10], "little")
+    header = _HEADER.match(blob[10:start])
+    if header is None:
+        raise ValueError("found no header of an array")
+    order, *shape = header.groups()
+    return np.frombuffer(blob[start:], "<f8").reshape([int(n) for n in shape], order="F" if order == b"True" else "C")

@@ -174,7 +174,10 @@ def _version(file: Path, db: sqlite3.Connection) -> int:
     )
     if application == APPLICATION_ID and version > SCHEMA_VERSION:
         raise SuiteError(f"{file}: found a journal of version {version}, allowed up to {SCHEMA_VERSION}: update suite")
-    names = {name for _, name, *_ in db.execute("PRAGMA table_info(trials)")}
+    try:
+        names = {name for _, name, *_ in db.execute("PRAGMA table_info(trials)")}
+    except UnicodeDecodeError:  # damaged, and not what SQLite looks for
+        names = set()
     if application == APPLICATION_ID and version >= 2 and {c.name for c in COLUMNS if c.since <= version} < names:
         return int(version)
     if application == version == 0:
