@@ -10,7 +10,7 @@ BIN := $(VENV)/bin
 RUNNABLE := $(VENV)/.runnable
 TESTABLE := $(VENV)/.testable
 
-.PHONY: run test mutants bench lint lock clean
+.PHONY: run test mutants faults fuzz bench lint lock bundle clean
 
 run: $(RUNNABLE)
 	$(BIN)/suite run --planners temporal,rrt,pf
@@ -20,6 +20,12 @@ test: $(TESTABLE)
 
 mutants: $(TESTABLE)
 	$(BIN)/python -m tests.mutants $(MUTANTS)
+
+faults: $(TESTABLE)
+	$(BIN)/python -m tests.faults
+
+fuzz: $(TESTABLE)
+	$(BIN)/python -m tests.fuzz
 
 bench: $(TESTABLE)
 	$(BIN)/python -m benchmarks $(BENCH)
@@ -53,8 +59,12 @@ UV_COMPILE := uv pip compile pyproject.toml --quiet --universal --python-version
 
 lock:
 	$(UV_COMPILE) --all-extras --output-file requirements-all.lock
-	$(UV_COMPILE) --extra test --extra dev --constraint requirements-all.lock --output-file requirements-dev.lock
+	$(UV_COMPILE) --extra test --extra dev --extra cluster --constraint requirements-all.lock --output-file requirements-dev.lock
 	$(UV_COMPILE) --constraint requirements-all.lock --output-file requirements.lock
+
+# The script of replays and reports from web/, with three.js in it; needs node. What it makes is committed.
+bundle:
+	cd web && npm ci --no-audit --no-fund --omit-lockfile-registry-resolved && npm run bundle
 
 clean:
 	rm -rf $(VENV)

@@ -14,11 +14,13 @@ for library in ("OMP", "OPENBLAS", "MKL"):
 def main() -> None:
     """Run the parts asked for, all by default."""
     from benchmarks.boundary import boundary
+    from benchmarks.cluster import against_local
     from benchmarks.continuous import solve_times
     from benchmarks.first_minute import first_minute
     from benchmarks.gate import gate
     from benchmarks.planning import against_literal, growth
     from benchmarks.proofs import possible, soundness
+    from benchmarks.scale import scale
     from benchmarks.strrt import against_ompl
     from benchmarks.suite_runs import memory, step, throughput
     from benchmarks.timing import render
@@ -34,6 +36,8 @@ def main() -> None:
         "step": ("What a step of a trial takes", step),
         "memory": ("Memory", memory),
         "first-minute": ("The first minute, beside an earlier version", first_minute),
+        "cluster": ("Two Dask workers beside two local ones, table1", against_local),
+        "scale": ("A hundred thousand trials", scale),
         "possible": ("What is proven impossible, seed 0", possible),
         "soundness": ("Proofs against planners", soundness),
         "gate": ("False alarms and power of suite compare", gate),
@@ -44,7 +48,7 @@ def main() -> None:
         "parts",
         nargs="*",
         metavar="part",
-        help=f"which to run: {', '.join(parts)}; all by default, but for the last five",
+        help=f"which to run: {', '.join(parts)}; all by default, but for the last six",
     )
     parser.add_argument("--quick", action="store_true", help="fewer and smaller samples: two minutes, not eight")
     given = parser.parse_args()
@@ -53,7 +57,7 @@ def main() -> None:
         parser.error(f"part: found {unknown[0]!r}, allowed {', '.join(parts)}")
     sys.stdout.write(f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}\n")
     # Only when asked for: these take many minutes, and strrt installs another OMPL first, 700 MB in the cache folder.
-    for name in given.parts or list(parts)[:-5]:
+    for name in given.parts or list(parts)[:-6]:
         title, measure = parts[name]
         sys.stdout.write(f"\n{render(title, measure(given.quick))}")
         sys.stdout.flush()

@@ -28,7 +28,7 @@ PAIRS = (100, 200, 400)
 
 def gate(quick: bool) -> list[Line]:
     """False alarms and power of the gate, in percent of pairs of runs."""
-    return _simulated(2_000 if quick else 20_000) + _on_real_trials(*((40, 4, 20) if quick else (400, 12, 200)))
+    return _simulated(2_000 if quick else 20_000) + _on_real_trials(*((40, 3, 20) if quick else (400, 6, 200)))
 
 
 def _simulated(repeats: int) -> list[Line]:

@@ -20,7 +20,8 @@ from benchmarks.timing import Line, seconds_per_call
 from planners import Session, build_predictor, parse_planner
 from scenarios import generate
 from suite.auditor import collides
-from suite.experiment.experiment import PRESETS, Experiment, make_experiment
+from suite.experiment.experiment import Experiment, make_experiment
+from suite.experiment.presets import PRESETS
 from suite.runner import run_experiment
 from suite.store.run_folder import read_trials
 from suite.trial.execution import Execution

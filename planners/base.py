@@ -32,6 +32,8 @@ class ArmPlanner(ob.Planner):
     """What it is called in specs and tables; the class's own name if empty."""
     settings_model: ClassVar[type[BaseModel]] = NoSettings
     """Its settings with types, defaults, limits and descriptions; every field is a key in ``name[key=value]``."""
+    budget: ClassVar[tuple[str, ...]] = ()
+    """Names of the settings, all numbers, that say how much it may spend: ``name[budget=0.1]`` gives it a tenth."""
     summary: ClassVar[str] = ""
     """What it does, in a line."""
     source: ClassVar[str] = ""

@@ -21,7 +21,7 @@ class Failure(NamedTuple):
     """Why a planner can't be had or did not come through; it costs that planner's trials and no others."""
 
     outcome: str
-    """Outcome of its trials: ``planner_error`` or ``planner_hung``."""
+    """Outcome of its trials, such as ``planner_error``."""
     message: str
     """One line, with file and line where there is one."""
     traceback: str = ""
@@ -37,7 +37,8 @@ def failure_of(error: BaseException, where: str = "") -> Failure:
     whole = "".join(traceback.format_exception(error))
     place = _place(error)
     message = line[: LONGEST_MESSAGE - len(place)] + place
-    return Failure("planner_error", _encodable(message), _encodable(whole[-LONGEST_TRACEBACK:]))
+    outcome = "planner_memory" if isinstance(error, MemoryError) else "planner_error"
+    return Failure(outcome, _encodable(message), _encodable(whole[-LONGEST_TRACEBACK:]))
 
 
 def _place(error: BaseException) -> str:

@@ -102,7 +102,7 @@ def code_hash(name: str) -> str:
     place, _, class_name = _target(name).rpartition(":")
     if is_here(name):
         return _hash_here(_OFFERED_HERE[class_name])
-    return _IMPORTED[place] if place in _IMPORTED else _hash(_sources(place))
+    return _IMPORTED[place] if place in _IMPORTED else _hash(sources(place))
 
 
 def _hash_here(planner: type[ArmPlanner]) -> str:
@@ -134,15 +134,15 @@ def _module(place: str) -> ModuleType:
         SpecError: There is no module of that name.
     """
     if place.endswith(".py"):
-        return _file_module(place, _hash(_sources(place)))
-    sources = _sources(place)
+        return _file_module(place, _hash(sources(place)))
+    found = sources(place)
     try:
         module = importlib.import_module(place)
     except ModuleNotFoundError as error:
         if error.name is None or not f"{place}.".startswith(f"{error.name}."):
             raise
         raise SpecError(f"planner: found no module {place!r}, allowed one that is installed or beside you") from None
-    _IMPORTED.setdefault(place, _hash(sources))
+    _IMPORTED.setdefault(place, _hash(found))
     return module
 
 
@@ -181,8 +181,8 @@ def _append_path(folder: str) -> None:
         sys.path.append(folder)
 
 
-def _sources(place: str) -> list[Path]:
-    """The sources behind a file or a module."""
+def sources(place: str) -> list[Path]:
+    """The sources behind a file or a module: what is hashed, and what another machine needs."""
     return sorted(_closure(Path(place)) if place.endswith(".py") else _package_sources(place))
 
 

@@ -16,7 +16,7 @@ from scenarios.arm import ContinuumArm, FloatArray
 from scenarios.obstacle import Obstacle
 from scenarios.scenario import Scenario
 from scenarios.shaped_world import shaped_world
-from scenarios.world import cover_world
+from scenarios.world import SampledWorld, cover_world
 
 GOALS = 64
 """Goal configurations looked for per trial."""
@@ -108,6 +108,10 @@ class Session:
             check(configurations_rad[k], times_s[k], configurations_rad[k + 1], times_s[k + 1])
             for k in range(len(times_s) - 1)
         )
+
+    def expected(self) -> SampledWorld:
+        """Where the obstacles were expected at the latest look, grown as this planner wants them."""
+        return self._problem.query.prediction.world(self._margin, self._largest_bound_m)
 
     def _look(self, observation: Observation, now_s: float) -> None:
         prediction = self._predictor.predict(observation, self._horizon_s, self._step_s)

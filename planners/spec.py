@@ -2,7 +2,7 @@
 
 ``name`` is one of the house's, a planner of OMPL's (``ompl.KPIECE1``), a file's (``path/to/file.py:Class``), a module's
 (``package.module:Class``) or one that an installed distribution offers. The key ``name`` is the same for all: what
-the planner is to be called in tables.
+the planner is to be called in tables. So is ``budget``, for those that have one: a factor on what they may spend.
 """
 
 from __future__ import annotations
@@ -20,6 +20,9 @@ from planners.sampling import by_name
 from scenarios.spec import SpecError, known_name, parse_settings, parse_spec
 from scenarios.spec import split_specs as split_texts
 
+BUDGET = "budget"
+"""Key of every planner that declares one, beside its settings."""
+MAX_BUDGET = 1000.0
 _LABEL = re.compile(r"[A-Za-z0-9_.+-]{1,40}")
 
 
@@ -110,9 +113,27 @@ def parse_planner(text: str) -> PlannerSpec:
     """
     label, name, values = read_spec(text)
     planner = planner_class(name)
+    budget = values.pop(BUDGET, None) if planner.budget and BUDGET not in planner.settings_model.model_fields else None
     settings = parse_settings(label.partition("[")[0], planner.settings_model, values)
+    if budget is not None:
+        settings = _scaled(label.partition("[")[0], planner, settings, budget)
     code = plugins.code_hash(name) if is_outside(name) else ""
     return PlannerSpec(label, name, settings, planner.predictor, planner.prediction_margin, planner.is_bound, code)
+
+
+def _scaled(name: str, planner: type[ArmPlanner], settings: BaseModel, budget: str) -> BaseModel:
+    """The settings with a planner's own budget multiplied by ``budget``; counts are rounded, and never below 1."""
+    try:
+        factor = float(budget)
+    except ValueError:
+        factor = 0.0
+    if not 0.0 < factor <= MAX_BUDGET:
+        raise SpecError(f"{name}[{BUDGET}]: found {budget!r}, allowed a number above 0 and up to {MAX_BUDGET:g}")
+    values = settings.model_dump()
+    for key in planner.budget:
+        value = factor * values[key]
+        values[key] = max(1, round(value)) if isinstance(values[key], int) else value
+    return parse_settings(f"{name}[{BUDGET}={budget}]", planner.settings_model, values)
 
 
 def label_of(text: str) -> str:

@@ -2,7 +2,7 @@
 
 from scenarios.arm import ContinuumArm
 from scenarios.collision import are_states_valid, clearance, clearances, is_motion_valid, is_state_valid
-from scenarios.errors import ScenarioError
+from scenarios.errors import FileError, ScenarioError, UserError
 from scenarios.families import FAMILIES, drawn, generate, start_is_free
 from scenarios.files import load_scenarios, save_scenarios
 from scenarios.motion import Line, Orbit, Still, Track, Wander, Wave
@@ -21,6 +21,7 @@ __all__ = [
     "Capsule",
     "ContinuumArm",
     "Cylinder",
+    "FileError",
     "Line",
     "Mesh",
     "Obstacle",
@@ -34,6 +35,7 @@ __all__ = [
     "SpecError",
     "Still",
     "Track",
+    "UserError",
     "Wander",
     "Wave",
     "are_states_valid",

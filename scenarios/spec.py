@@ -2,17 +2,19 @@
 
 import difflib
 import re
-from collections.abc import Iterable
-from typing import TypeVar
+from collections.abc import Iterable, Mapping
+from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
+
+from scenarios.errors import UserError
 
 _Settings = TypeVar("_Settings", bound=BaseModel)
 _NAME = re.compile(r"[^\s\[\],=][^\[\],=]*")
 
 
-class SpecError(ValueError):
-    """A spec cannot be read or names something unknown; the message is one line and lists what is known."""
+class SpecError(UserError):
+    """A spec cannot be read or names something unknown; the message lists what is known."""
 
 
 def split_specs(text: str) -> list[str]:
@@ -65,8 +67,8 @@ def known_name(kind: str, name: str, known: Iterable[str]) -> str:
     return name
 
 
-def parse_settings(name: str, model: type[_Settings], values: dict[str, str]) -> _Settings:
-    """Build a settings model from text values.
+def parse_settings(name: str, model: type[_Settings], values: Mapping[str, Any]) -> _Settings:
+    """Build a settings model from values, which may be texts.
 
     Raises:
         SpecError: An unknown key or a value out of range; the message lists the known keys or the allowed values.
@@ -74,7 +76,9 @@ def parse_settings(name: str, model: type[_Settings], values: dict[str, str]) ->
     unknown = [key for key in values if key not in model.model_fields]
     if unknown:
         known = ", ".join(model.model_fields) or "none"
-        raise SpecError(f"{name}: found setting {unknown[0]!r}, allowed {known}")
+        nearest = difflib.get_close_matches(unknown[0][:100], model.model_fields, 1)
+        hint = f"; nearest: {nearest[0]}" if nearest else ""
+        raise SpecError(f"{name}: found setting {unknown[0]!r}, allowed {known}{hint}")
     try:
         return model.model_validate(values)
     except ValidationError as error:

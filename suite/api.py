@@ -23,6 +23,7 @@ from suite.auditor import Audit
 from suite.auditor import audit as judge
 from suite.auditor.certificate import certified_contacts
 from suite.auditor.fcl_engine import sampled_contacts
+from suite.backends.job import Limits
 from suite.compare.conditions import telling_apart
 from suite.compare.gate import Bar, Comparison, compare_runs
 from suite.compare.possible import scenarios_frame
@@ -31,7 +32,7 @@ from suite.errors import SuiteError
 from suite.experiment.experiment import make_experiment
 from suite.experiment.file import preset_fields
 from suite.merger import merge_runs
-from suite.runner import DEFAULT_HANG_LIMIT_S, run_experiment
+from suite.runner import run_experiment
 from suite.show.text import cells
 from suite.store.journal import Executed, Journal
 from suite.store.run_folder import (
@@ -146,7 +147,7 @@ def run(
     out: str | Path | None = None,
     preset: str | None = None,
     processes: int = 0,
-    hang_limit_s: float = DEFAULT_HANG_LIMIT_S,
+    hang_limit_s: float = 300.0,
     fresh: bool = False,
     keep_stale: bool = False,
     **conditions: Any,
@@ -175,7 +176,14 @@ def run(
     given = conditions | ({"planners": texts} if texts else {})
     experiment = make_experiment(**(preset_fields(preset) if preset else {}) | given)
     folder = Path(out) if out is not None else Path("results") / experiment.name
-    run_experiment(experiment, folder, workers=processes, hang_limit_s=hang_limit_s, fresh=fresh, keep_stale=keep_stale)
+    run_experiment(
+        experiment,
+        folder,
+        workers=processes,
+        limits=Limits(hang_limit_s),
+        fresh=fresh,
+        keep_stale=keep_stale,
+    )
     return Run(folder)
 
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from pydantic import ValidationError
 
+from scenarios.errors import UserError
 
-class SuiteError(ValueError):
-    """A mistake the user can mend; the message is one line for the terminal."""
+
+class SuiteError(UserError):
+    """A run, a table or a file of one cannot be had like this."""
 
 
 def one_line(error: ValidationError) -> str:

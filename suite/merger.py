@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from scenarios import PackedScenarios, Scenario, ScenarioError, load_scenarios
+from scenarios import FileError, PackedScenarios, Scenario, ScenarioError, load_scenarios
 from suite.errors import SuiteError
 from suite.experiment.experiment import make_experiment
 from suite.experiment.manifest import Manifest
@@ -101,18 +101,36 @@ def _manifest(manifests: Sequence[Manifest], union: Union) -> Manifest:
 
 
 def _experiment(parts: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    """The experiment that asks for what all ask for; empty if there is none, as with several seeds."""
+    """The experiment that asks for what all ask for; empty if there is none.
+
+    Conditions are crossed with one another, so runs may differ in one of them, in seeds for example; planners and
+    obstacles they may have more of, and trials too: what the others lack is what is missing of the whole.
+    """
     united = dict(parts[0])
+    swept = set[str]()
     for part in parts[1:]:
         for field in {*united, *part}:
             ours, theirs = united.get(field), part.get(field)
-            if field in ("planners", "obstacles") and isinstance(ours, list) and isinstance(theirs, list):
-                united[field] = list(dict.fromkeys([*ours, *theirs]))
-            elif field == "trials" and isinstance(ours, int) and isinstance(theirs, int):
+            if field == "trials" and isinstance(ours, int) and isinstance(theirs, int):
                 united[field] = max(ours, theirs)
             elif ours != theirs:
-                return {}
-    return united
+                values = [*_listed(ours), *_listed(theirs)]
+                united[field] = [value for k, value in enumerate(values) if value not in values[:k]]
+                swept |= {field} - {"planners", "obstacles"}
+    return united if len(swept) <= 1 and _is_one(united) else {}
+
+
+def _listed(value: Any) -> list[Any]:
+    return value if isinstance(value, list) else [value]
+
+
+def _is_one(fields: dict[str, Any]) -> bool:
+    """Whether an experiment can be made of the fields; not every field takes several values."""
+    try:
+        make_experiment(**fields)
+    except (ValueError, TypeError):
+        return False
+    return True
 
 
 def _scenarios(folders: Sequence[Path], manifests: Sequence[Manifest], wanted: Iterable[str]) -> Iterator[Scenario]:
@@ -135,7 +153,7 @@ def _of_run(folder: Path, manifest: Manifest) -> list[Scenario]:
     """All of a run's scenarios; an unfinished run has not written them yet."""
     try:
         return load_scenarios(folder / "scenarios.jsonl")
-    except ScenarioError:
+    except (FileError, ScenarioError):
         try:
             return list(make_experiment(**manifest.get("experiment", {})).scenarios())
         except (ValueError, TypeError):

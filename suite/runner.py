@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import sqlite3
 import threading
 from contextlib import closing
 from functools import partial
@@ -10,12 +11,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from planners import check_fit
-from suite.backends.job import LEAST_WARM_UP_S, Backend, Job
+from suite.backends.job import LEAST_WARM_UP_S, Backend, Job, Limits
 from suite.backends.local import InProcess
 from suite.backends.processes import Processes
 from suite.backends.warm_up import warm_up_parts
+from suite.errors import SuiteError
 from suite.experiment.experiment import Experiment
 from suite.experiment.manifest import make_manifest
+from suite.experiment.presets import standard_of
 from suite.progress import note, progress
 from suite.store.journal import Journal
 from suite.store.run_folder import open_run, read_table
@@ -26,7 +29,7 @@ from suite.trial.lineup import Lineup, Tasks
 if TYPE_CHECKING:
     import pandas as pd
 
-DEFAULT_HANG_LIMIT_S = 300.0
+USUAL_LIMITS = Limits()
 
 
 class RunInterrupted(Exception):
@@ -40,8 +43,8 @@ def run_experiment(
     experiment: Experiment,
     folder: Path,
     *,
-    workers: int | Processes,
-    hang_limit_s: float = DEFAULT_HANG_LIMIT_S,
+    workers: int | Backend,
+    limits: Limits = USUAL_LIMITS,
     fresh: bool = False,
     keep_stale: bool = False,
     quiet: bool = False,
@@ -51,10 +54,9 @@ def run_experiment(
     Args:
         experiment: What to run.
         folder: Where the run lives; one that is there goes on, and grows by what is new.
-        workers: Number of worker processes, or those that were started ahead; 0 runs the trials in this process, where
-            nobody can kill a planner that hangs.
-        hang_limit_s: A trial that takes longer is killed and recorded as ``planner_hung`` [s]. So is a planner's
-            warm-up, which has two minutes at the least: it may have to compile.
+        workers: Number of worker processes, or those that were started ahead, or a cluster; 0 runs the trials in this
+            process, where nobody can kill a planner that hangs.
+        limits: What a trial may take in a worker process.
         fresh: Start over, whatever an earlier run has left in the folder.
         keep_stale: Use rows that other code has made as they are.
         quiet: Say nothing on the way.
@@ -74,6 +76,9 @@ def run_experiment(
         check_fit(experiment.specs(), arm)
     tasks = Lineup(partial(experiment.tasks, scenarios), range(experiment.count(len(scenarios))))
     manifest = make_manifest(experiment, scenarios)
+    standard = standard_of(experiment, scenarios.digest)
+    if standard and not standard.is_met:
+        note(f"scenarios {scenarios.digest} are not those of {standard.name}: another machine or suite draws otherwise")
     with open_run(folder, manifest, tasks, fresh=fresh, keep_stale=keep_stale) as (journal, standing):
         for line in [] if quiet else standing.notes():
             note(line)
@@ -81,8 +86,15 @@ def run_experiment(
         threading.Thread(target=importlib.import_module, args=["suite.show.derived"], daemon=True).start()
         try:
             if standing.left:
-                parts = warm_up_parts(task for task in standing.examples.values() if not task.spec.failure)
-                job = Job(run_trial, hang_limit_s, parts, max(LEAST_WARM_UP_S, hang_limit_s))
+                examples = [task for task in standing.examples.values() if not task.spec.failure]
+                job = Job(
+                    run_trial,
+                    limits.hang_s,
+                    warm_up_parts(examples),
+                    max(LEAST_WARM_UP_S, limits.hang_s),
+                    limits.memory_mb,
+                    examples,
+                )
                 _run(job, tasks.at(standing.left), journal, workers, quiet=quiet)
             from suite.show.derived import write_derived
 
@@ -92,9 +104,14 @@ def run_experiment(
             return summary
         except KeyboardInterrupt:
             raise RunInterrupted(len(journal.finished()), len(tasks)) from None
+        except (OSError, sqlite3.Error) as error:
+            reason = getattr(error, "strerror", None) or error
+            raise SuiteError(
+                f"{folder}: stopped: {reason}; what had finished is saved, and the same command goes on from there"
+            ) from None
 
 
-def _run(job: Job, tasks: Tasks, journal: Journal, workers: int | Processes, *, quiet: bool) -> None:
+def _run(job: Job, tasks: Tasks, journal: Journal, workers: int | Backend, *, quiet: bool) -> None:
     """Run every task and store each result as it comes."""
     backend: Backend = InProcess() if workers == 0 else Processes(workers) if isinstance(workers, int) else workers
     with progress(len(tasks), quiet=quiet) as report, closing(backend.run(job, tasks, report.warm_up)) as finished:

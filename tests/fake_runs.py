@@ -9,10 +9,11 @@ from pathlib import Path
 from unittest.mock import patch
 
 import pandas as pd
-from fakes import behave, prepare_nothing
+from fakes import behave, behave_slowly, prepare_nothing
 
 import suite.runner
 from planners import PlannerSpec, describe
+from suite.backends.cluster.head import DaskCluster
 from suite.experiment.experiment import make_experiment
 from suite.store.journal import Journal
 from suite.trial.columns import TIMING_NAMES
@@ -28,13 +29,14 @@ def run_with_fakes(
     die_after: int | None = None,
     fresh: bool = False,
     keep_stale: bool = False,
-    in_processes: bool = False,
+    where: int | str = 0,
     sources: str = SOURCES,
     codes: Mapping[str, str] | None = None,
     **changes: object,
 ) -> list[str]:
     """Sixteen trials unless ``changes`` of the experiment say otherwise.
 
+    They run ``where`` there are so many processes, 0 being this one, or at a scheduler's address, in some time.
     Takes its own process down after ``die_after`` trials. ``codes`` are hashes of planners' own code, by label.
     Returns the labels of the trials that were run, sorted.
     """
@@ -56,11 +58,11 @@ def run_with_fakes(
     with (
         patch("suite.experiment.code.source_hash", return_value=sources),
         patch("suite.experiment.experiment.describe", described),
-        patch.object(suite.runner, "run_trial", behave),
+        patch.object(suite.runner, "run_trial", behave_slowly if isinstance(where, str) else behave),
         patch.object(suite.runner, "warm_up_parts", prepare_nothing),
         patch.object(Journal, "add", add),
     ):
-        workers = 2 if in_processes else 0
+        workers = DaskCluster(where, 0, prepare_nothing) if isinstance(where, str) else where
         suite.runner.run_experiment(experiment, folder, workers=workers, fresh=fresh, keep_stale=keep_stale)
     return sorted(ran)
 

@@ -136,6 +136,7 @@ class ContinuousPlanner(TreePlanner):
 
     name = "temporal-ct"
     settings_model = ContinuousSettings
+    budget = ("branches", "refinements", "retry_branches", "nodes")
     summary = "space-time tree of steered runs, valid at every instant, repaired when the prediction changes"
     source = "this suite: docs/temporal-ct.md"
 
@@ -223,6 +224,7 @@ class ClairvoyantPlanner(TreePlanner):
 
     name = "clairvoyant"
     settings_model = ClairvoyantSettings
+    budget = ("branches", "refinements", "nodes")
     summary = "the same search with the true motion, a large budget and restarts"
     source = "this suite: docs/temporal-ct.md"
     commitment = "path"

@@ -57,6 +57,8 @@ class RRTSettings(TreeSettings):
 class SpaceTimeTree(ReplanningPlanner):
     """Lends one of OMPL's trees a goal and a part of space-time, attempt after attempt, until it has a path."""
 
+    budget = ("iterations",)
+
     def __init__(self, problem: SpaceTimeProblem, settings: AttemptSettings, tree: ob.Planner) -> None:
         """Plan on ``problem`` with ``tree``, a planner on the same space."""
         super().__init__(problem, settings)

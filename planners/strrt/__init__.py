@@ -99,6 +99,7 @@ class STRRTPlanner(ReplanningPlanner):
 
     name = "strrt"
     settings_model = STRRTSettings
+    budget = ("iterations", "refinements", "nodes")
     summary = "ST-RRT* in space-time, replanned when the prediction invalidates the path"
     source = "Grothe et al., ICRA 2022"
 

@@ -9,10 +9,16 @@ which start with different kernels share the work.
 """
 
 import ast
+import atexit
 import fcntl
 import functools
 import hashlib
 import os
+import pickle
+import shutil
+import stat
+import sys
+import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -20,15 +26,47 @@ from typing import Any
 
 import numba
 import platformdirs
+from numba.core.caching import IndexDataCacheFile, NullCache
 from numba.core.compiler_lock import global_compiler_lock
 
+DIGEST_BYTES = 32
 _ROOT = Path(__file__).resolve().parents[2]
 
 
 def cache_folder() -> Path:
-    """Folder for compiled kernels and enumerated spaces; ``SUITE_CACHE_DIR`` overrides the user's cache folder."""
+    """Folder for compiled kernels and enumerated spaces; ``SUITE_CACHE_DIR`` overrides the user's cache folder.
+
+    Where neither can be used it is a temporary one, which this process says and its workers share.
+    """
     override = os.environ.get("SUITE_CACHE_DIR")
-    return Path(override) if override else Path(platformdirs.user_cache_dir("continuum-arm-suite"))
+    return _usable(Path(override or platformdirs.user_cache_dir("continuum-arm-suite")).absolute())
+
+
+@functools.cache
+def _usable(wanted: Path) -> Path:
+    try:
+        wanted.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=wanted) as probe:
+            probe.write(b"is there room")
+    except OSError as error:
+        folder = _temporary()
+        reason = f"cannot be used for compiled code: {error.strerror}"
+        sys.stderr.write(f"suite: {wanted}: {reason}; set SUITE_CACHE_DIR to a folder that can. Until then: {folder}\n")
+        return folder
+    return wanted
+
+
+def _temporary() -> Path:
+    """A folder that goes with the process that made it; ``SUITE_CACHE_FALLBACK`` tells workers where it is."""
+    name = os.environ.get("SUITE_CACHE_FALLBACK", f"continuum-arm-suite-{os.getpid()}")
+    folder = Path(tempfile.gettempdir(), Path(name).name)
+    folder.mkdir(mode=0o700, exist_ok=True)
+    found = folder.lstat()
+    if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.geteuid():  # somebody else's, who may put anything there
+        folder = Path(tempfile.mkdtemp(prefix="continuum-arm-suite-"))
+    if "SUITE_CACHE_FALLBACK" not in os.environ:
+        atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return folder
 
 
 @functools.lru_cache
@@ -85,8 +123,44 @@ def _compile(function: Callable[..., Any], **options: bool) -> Callable[..., Any
     config.CACHE_DIR = str(cache_folder() / "kernels" / source_hash(Path(function.__code__.co_filename)))
     njit: Any = numba.njit  # its types do not know ``_nrt``
     compiled = njit(cache=True, fastmath=False, error_model="numpy", **options)(function)
+    if Path(compiled._cache.cache_path).is_relative_to(config.CACHE_DIR):
+        compiled._cache._cache_file.__class__ = _CheckedFile
+    else:  # beside the source, where Numba goes next, a kernel would be found whatever it calls
+        compiled._cache = NullCache()
     compiled.compile = functools.partial(_compile_once, compiled)
     return compiled
+
+
+class _CheckedFile(IndexDataCacheFile):
+    """A kernel's index and machine code in the cache: what is damaged is not there, what cannot be kept is not kept."""
+
+    def load(self, key: Any) -> Any:
+        """What was saved under ``key``; None if that is not to be had."""
+        try:
+            return super().load(key)
+        except Exception:  # noqa: BLE001  unpickling what was cut off raises anything
+            return None
+
+    def save(self, key: Any, data: Any) -> None:
+        """Keep ``data`` under ``key``."""
+        with suppress(OSError):
+            try:
+                self._load_index()
+            except Exception:  # noqa: BLE001  as above
+                Path(self._index_path).unlink(missing_ok=True)
+            super().save(key, data)
+
+    def _dump(self, content: Any) -> bytes:
+        pickled: bytes = super()._dump(content)
+        return pickled + hashlib.sha256(pickled).digest()
+
+    def _load_data(self, name: str) -> Any:
+        """Machine code with one wrong bit would run."""
+        whole = Path(self._data_path(name)).read_bytes()
+        pickled, digest = whole[:-DIGEST_BYTES], whole[-DIGEST_BYTES:]
+        if hashlib.sha256(pickled).digest() != digest:
+            raise ValueError(f"{name}: damaged")
+        return pickle.loads(pickled)
 
 
 def _compile_once(dispatcher: Any, signature: tuple[Any, ...]) -> Any:
@@ -106,6 +180,9 @@ _held: set[Path] = set()
 def _turn(dispatcher: Any) -> Iterator[None]:
     """Wait until no other process compiles this kernel; where nothing can be written, nothing is shared either."""
     function = dispatcher.py_func
+    if isinstance(dispatcher._cache, NullCache):
+        yield
+        return
     file = Path(dispatcher._cache.cache_path) / f"{function.__qualname__}-{function.__code__.co_firstlineno}.lock"
     if file in _held:
         yield

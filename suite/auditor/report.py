@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
-from suite.auditor.command import Judged
+from suite.auditor.command import Judged, JudgedPoints
 from suite.auditor.verdicts import VERDICTS, Contact, Verdict, contact_columns
 
 COLUMNS = (
@@ -56,6 +56,49 @@ def as_json(found: Iterable[Judged]) -> Iterator[str]:
 
 
 FORMATS: dict[str, Callable[[Iterable[Judged]], Iterator[str]]] = {"text": as_text, "json": as_json, "csv": as_csv}
+
+
+def points_as_text(one: JudgedPoints) -> Iterator[str]:
+    """A line for people."""
+    found = one.audit
+    verdicts = f"per step {_words(found.per_step)}, swept {_words(found.swept)}"
+    arrival_s = found.arrival_time_s
+    arrival = "never arrives" if math.isnan(arrival_s) else f"arrives at {arrival_s:.3f} s"
+    touch = f"; segment {found.contact_segment} touches obstacle {found.contact_obstacle} first"
+    clearance = f"clearance {1000.0 * found.min_clearance_m:.2f} mm"
+    yield f"{one.scenario.id}: {verdicts}; {arrival}; {clearance}{touch if found.contact_obstacle else ''}"
+
+
+def points_as_csv(one: JudgedPoints) -> Iterator[str]:
+    """A header and a row; cells of what there is not are empty."""
+    row = _points_row(one)
+    yield _csv_line(row)
+    yield _csv_line(["" if value is None else value for value in row.values()])
+
+
+def points_as_json(one: JudgedPoints) -> Iterator[str]:
+    """One object; null for what there is not, and for the clearance where there are no obstacles."""
+    row = {name: None if value == math.inf else value for name, value in _points_row(one).items()}
+    yield json.dumps(row, allow_nan=False)
+
+
+POINTS_FORMATS: dict[str, Callable[[JudgedPoints], Iterator[str]]] = {
+    "text": points_as_text,
+    "json": points_as_json,
+    "csv": points_as_csv,
+}
+
+
+def _points_row(one: JudgedPoints) -> dict[str, Any]:
+    found = one.audit
+    values: dict[str, Any] = {"scenario_id": one.scenario.id, "scenario_hash": one.scenario.content_hash}
+    for name, verdict in (("per_step", found.per_step), ("swept", found.swept)):
+        values[f"success_{name}"] = verdict.success
+        values[f"violation_{name}_time_s"] = verdict.violation_time_s
+        values[f"violation_{name}_kind"] = str(verdict.violation_kind) or None
+    for name in ("arrival_time_s", "min_clearance_m", "contact_obstacle", "contact_segment", "end_time_s"):
+        values[name] = getattr(found, name)
+    return {name: None if value != value else value for name, value in values.items()}
 
 
 def _row(one: Judged) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import re
 from array import array
 from collections.abc import Mapping, Sequence
@@ -12,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from scenarios import Scenario
+from scenarios.reading import read_text
 from suite.auditor.engine import FloatArray
 from suite.errors import SuiteError
 
@@ -42,37 +44,29 @@ def read_trajectories(file: Path, scenarios: Sequence[Scenario]) -> list[Traject
     ``inf`` are numbers here: judging them is the audit's business. Blank lines are passed over.
 
     Raises:
-        SuiteError: The file cannot be read or is too large, a line does not fit the header or its scenario, or a
-            trajectory begins again.
+        FileError: The file cannot be read or is too large.
+        SuiteError: A line does not fit the header or its scenario, or a trajectory begins again.
     """
     known = {scenario.id: scenario for scenario in scenarios}
     numbers: dict[tuple[str, str], array[float]] = {}
+    reader = csv.reader(io.StringIO(read_text(file, MAX_FILE_BYTES), newline=""))
     try:
-        size = file.stat().st_size
-        if size > MAX_FILE_BYTES:
-            raise SuiteError(f"{file}: found {size} bytes, allowed {MAX_FILE_BYTES}")
-        with file.open(encoding="utf-8-sig", newline="") as handle:
-            reader = csv.reader(handle)
-            first = next(reader, [])
-            has_condition = first[2:3] == [CONDITION]
-            header = _checked_header(file, first[:2] + first[3:] if has_condition else first)
-            for cells in reader:
-                if not any(map(str.strip, cells)):
-                    continue
-                where = f"{file}: line {reader.line_num}"
-                if has_condition and len(cells) > 2:
-                    cells[1:3] = [f"{cells[1]} {cells[2]}".strip()]
-                scenario = _scenario(where, header, cells, known)
-                state = _numbers(where, header[2:], cells[2:], 1 + scenario.arm.dof)
-                so_far = numbers.setdefault((scenario.id, cells[1]), array("d"))
-                if _begins_again(so_far, state):
-                    name = f"{scenario.id} {cells[1]}"
-                    raise SuiteError(f"{where}: found {_short(name)} beginning again, allowed once per file")
-                so_far.extend(state)
-    except OSError as error:
-        raise SuiteError(f"{file}: cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise SuiteError(f"{file}: found bytes that are not UTF-8, allowed UTF-8 text") from None
+        first = next(reader, [])
+        has_condition = first[2:3] == [CONDITION]
+        header = _checked_header(file, first[:2] + first[3:] if has_condition else first)
+        for cells in reader:
+            if not any(map(str.strip, cells)):
+                continue
+            where = f"{file}: line {reader.line_num}"
+            if has_condition and len(cells) > 2:
+                cells[1:3] = [f"{cells[1]} {cells[2]}".strip()]
+            scenario = _scenario(where, header, cells, known)
+            state = _numbers(where, header[2:], cells[2:], 1 + scenario.arm.dof)
+            so_far = numbers.setdefault((scenario.id, cells[1]), array("d"))
+            if _begins_again(so_far, state):
+                name = f"{scenario.id} {cells[1]}"
+                raise SuiteError(f"{where}: found {_short(name)} beginning again, allowed once per file")
+            so_far.extend(state)
     except csv.Error as error:
         raise SuiteError(f"{file}: not valid CSV: {error}") from None
     if not numbers:

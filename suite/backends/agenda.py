@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Callable, Collection, Iterator
+from itertools import chain
 
 from planners.failure import Failure
 from suite.backends.job import Job, Part
 from suite.trial.lineup import Tasks
 from suite.trial.task import TrialResult, TrialTask, failed_trial
 
+HOUSE = ""
+"""Owner of the processes in which the house's own planners run."""
 TRIES = 3
-"""So often a part of the warm-up, in which its process died, is begun before its planner is to blame."""
+"""So often a trial or a part of the warm-up, in which its process died, is begun before that counts."""
 LOOK_AHEAD = 5_000
-"""So many tasks may wait for their planners' warm-up while others go first; each takes some 8 KiB of memory."""
+"""So many tasks may wait for warm-ups, or for processes of their own; each takes some 8 KiB of memory."""
 
 
 class Agenda:
@@ -22,13 +25,16 @@ class Agenda:
     Tasks of a planner that is still being compiled wait, and nobody waits for a planner that hangs there: the others'
     tasks go first. Those of a planner that failed in its warm-up, or that can't even be imported, are never handed out,
     but are ``results`` at once.
+
+    A planner from outside may leave anything behind in its process (threads, limits, closed files, other people's
+    functions replaced), so a process that has run one runs no other: that planner is its owner from then on.
     """
 
     def __init__(self, job: Job, tasks: Tasks) -> None:
         """Plan ``tasks``, in this order; they are taken one by one, as they are needed."""
         self._job = job
-        self._coming = iter(tasks)
-        self._back: deque[TrialTask] = deque()
+        self._coming: Iterator[TrialTask] = iter(tasks)
+        self._aside: dict[str, deque[TrialTask]] = {HOUSE: deque()}
         self._held: dict[str, list[TrialTask]] = {}
         self._not_begun = deque(job.parts)
         self._begun: dict[str, Part] = {}
@@ -37,6 +43,11 @@ class Agenda:
         self._results: list[tuple[TrialTask, TrialResult]] = []
         self.n_open = len(tasks)
         """Tasks that have no result yet."""
+
+    def add(self, tasks: Tasks) -> None:
+        """Plan more, after all others."""
+        self._coming = chain(self._coming, tasks)
+        self.n_open += len(tasks)
 
     @property
     def not_begun(self) -> list[Part]:
@@ -48,18 +59,26 @@ class Agenda:
         """Parts of the warm-up that are under way for the first time."""
         return list(self._begun.values())
 
-    def next_part(self) -> Part | None:
-        """A part of the warm-up that nobody else is at."""
-        if not self._not_begun:
-            return None
-        part = self._not_begun.popleft()
-        self._begun[part.name] = part
-        return part
+    def next_part(self, owner: str = HOUSE) -> Part | None:
+        """A part of the warm-up that nobody else is at; for the process of an owner there is none but its own."""
+        for part in self._not_begun:
+            if owner in {HOUSE, part.owner}:
+                self._not_begun.remove(part)
+                self._begun[part.name] = part
+                return part
+        return None
 
-    def next_task(self) -> TrialTask | None:
-        """The first task whose planner is warm; None if there is none for now."""
+    def next_task(self, owner: str = HOUSE, served: Collection[str] = ()) -> TrialTask | None:
+        """The first task whose planner is warm, for a process of ``owner``'s; None if there is none for now.
+
+        A process of the house's may take any, but those of owners who are ``served`` already come last.
+        """
         cold = {part.planner for part in (*self._not_begun, *self._begun.values())} - {None}
-        while task := self._take():
+
+        def suits(whose: str) -> bool:
+            return whose not in served if owner == HOUSE else whose == owner
+
+        while task := self._take(suits) or (self._take(lambda _: True) if owner == HOUSE else None):
             label = task.spec.label
             if failure := self._failure_of(task):
                 self._fail(task, failure)
@@ -72,6 +91,10 @@ class Agenda:
             else:
                 return task
         return None
+
+    def has_others(self, owner: str) -> bool:
+        """Whether something waits that a process of ``owner``'s may not do."""
+        return bool(self._not_begun) or any(queue for whose, queue in self._aside.items() if whose != owner)
 
     def is_warm(self, part: Part) -> None:
         """Take note that a process has warmed up ``part``."""
@@ -92,13 +115,21 @@ class Agenda:
             del self._begun[part.name]
             self._not_begun.appendleft(part)
 
+    def lost(self, task: TrialTask, failure: Failure, spent_s: float) -> None:
+        """Take note that a task's process was killed by somebody else: it runs again, a few times."""
+        self._deaths[task.key] = self._deaths.get(task.key, 0) + 1
+        if self._deaths[task.key] < TRIES:
+            self.put_back(task)
+        else:
+            self.finish(task, failed_trial(task, failure, spent_s))
+
     def put_back(self, task: TrialTask) -> None:
-        """Take back a task that has not been begun."""
-        self._back.appendleft(task)
+        """Take back a task that has no result."""
+        self._set_aside(owner_of(task)).appendleft(task)
 
     def give_up_one(self, failure: Failure) -> None:
         """Let the next task fail for want of a process to run it in."""
-        task = self._take()
+        task = self._take(lambda _: True)
         if task is None:
             task = next(held.pop(0) for held in self._held.values() if held)
         self._fail(task, failure)
@@ -113,9 +144,19 @@ class Agenda:
         results, self._results = self._results, []
         return iter(results)
 
-    def _take(self) -> TrialTask | None:
-        """The first of the tasks that nobody holds."""
-        return self._back.popleft() if self._back else next(self._coming, None)
+    def _take(self, suits: Callable[[str], bool]) -> TrialTask | None:
+        """The first task whose owner suits and that nobody holds; others on the way to it are set aside."""
+        for whose, queue in self._aside.items():
+            if queue and suits(whose):
+                return queue.popleft()
+        while sum(map(len, self._aside.values())) < LOOK_AHEAD and (task := next(self._coming, None)):
+            if suits(owner_of(task)):
+                return task
+            self._set_aside(owner_of(task)).append(task)
+        return None
+
+    def _set_aside(self, owner: str) -> deque[TrialTask]:
+        return self._aside.setdefault(owner, deque())
 
     def _failure_of(self, task: TrialTask) -> Failure | None:
         return task.spec.failure or self._failures.get(None) or self._failures.get(task.spec.label)
@@ -127,4 +168,9 @@ class Agenda:
         """Let the tasks that wait for ``part`` go on, before all others."""
         self._begun.pop(part.name, None)
         held = self._held.pop(part.planner, []) if part.planner else []
-        self._back.extendleft(reversed(held))
+        self._set_aside(part.owner).extendleft(reversed(held))
+
+
+def owner_of(task: TrialTask) -> str:
+    """Whom a process belongs to that has run ``task``: its planner if that is from outside, else ``HOUSE``."""
+    return task.spec.label if task.spec.code else HOUSE

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Generator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 if TYPE_CHECKING:
     from suite.trial.lineup import Tasks
@@ -12,6 +12,15 @@ if TYPE_CHECKING:
 
 LEAST_WARM_UP_S = 120.0
 """Compiling a part of the warm-up takes up to ten seconds of processor time; this many make it a hang anywhere."""
+
+
+class Limits(NamedTuple):
+    """What a trial may take in a worker process, before it is killed and recorded as such."""
+
+    hang_s: float = 300.0
+    """Wall time [s]: ``planner_hung``. A planner's warm-up has two minutes at the least: it may have to compile."""
+    memory_mb: float | None = None
+    """Memory beyond what its process had before [MB]: ``planner_memory``; no limit when None."""
 
 
 @dataclass(frozen=True)
@@ -28,6 +37,13 @@ class Part:
     """Label of the planner whose trials alone need it and fail with it; None for what every trial needs."""
     is_shared: bool = True
     """Whether every process needs it before its first trial, else only the first to compile what other parts load."""
+    is_outside: bool = False
+    """Whether it is of a planner from outside, whose process is for nobody else."""
+
+    @property
+    def owner(self) -> str:
+        """That planner's label, or empty."""
+        return self.planner or "" if self.is_outside else ""
 
 
 @dataclass(frozen=True)
@@ -42,6 +58,10 @@ class Job:
     """The warm-up; what takes longest and what others are built on comes first."""
     warm_up_limit_s: float = LEAST_WARM_UP_S
     """A part that takes longer is killed and its planner's trials become ``planner_hung`` [s]."""
+    memory_limit_mb: float | None = None
+    """A task that takes more than its process had before is killed and becomes ``planner_memory`` [MB]."""
+    examples: Sequence[TrialTask] = ()
+    """A task of every kind that is to run, from which the parts were made; other machines make them anew."""
 
     def needed_by(self, task: TrialTask) -> list[Part]:
         """What a process has to have warmed up before ``task``."""

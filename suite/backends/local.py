@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import gc
 import time
 from collections.abc import Generator
@@ -9,7 +10,7 @@ from collections.abc import Generator
 from planners.failure import Failure, failure_of
 from suite.backends.job import Job, OnWarmUp, Part
 from suite.trial.lineup import Tasks
-from suite.trial.task import TrialResult, TrialTask, failed_trial
+from suite.trial.task import RowError, TrialResult, TrialTask, checked_result, failed_trial
 
 MANY_OBJECTS = 300_000
 """Made by compiling, not by loading what was compiled: worth the tenth of a second that it takes to clear away."""
@@ -39,7 +40,7 @@ class InProcess:
                     yield task, failed_trial(task, within(in_warm_up(part), failure), 0.0)
                     break
             else:
-                yield task, run_task(job, task)
+                yield task, run_task(job, copy.deepcopy(task))  # a planner may get at it and change it
 
 
 def warm_up(part: Part) -> Failure | None:
@@ -73,6 +74,8 @@ def run_task(job: Job, task: TrialTask) -> TrialResult:
     """Run ``task`` in this process; whatever its planner raises becomes a row, not the end of the run."""
     started_s = time.monotonic()
     try:
-        return job.run(task)
+        return checked_result(task, job.run(task))
+    except RowError as error:
+        return failed_trial(task, Failure("planner_error", str(error)), time.monotonic() - started_s)
     except (Exception, SystemExit) as error:  # noqa: BLE001  a planner may raise anything
         return failed_trial(task, failure_of(error), time.monotonic() - started_s)

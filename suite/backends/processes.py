@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Generator
+from contextlib import closing
 from types import TracebackType
 from typing import TYPE_CHECKING, Self
 
@@ -43,4 +44,5 @@ class Processes:
         from suite.backends.crew import Crew
 
         started, self._started = self._started, []
-        return Crew(started, self._workers, job, tasks, on_warm_up).run()
+        with closing(Crew(started, self._workers, job, tasks, on_warm_up)) as crew:
+            yield from crew.run()

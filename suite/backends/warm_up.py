@@ -44,7 +44,13 @@ def warm_up_parts(tasks: Iterable[TrialTask]) -> list[Part]:
             for typical_s, name in sorted(((TYPICAL_S.get(name, 1.0), name) for name in predictors), reverse=True)
         ),
         *(
-            Part(label, partial(_warm_up_planner, spec, sorted(names), arms), TYPICAL_PLANNER_S, planner=label)
+            Part(
+                label,
+                partial(_warm_up_planner, spec, sorted(names), arms),
+                TYPICAL_PLANNER_S,
+                planner=label,
+                is_outside=bool(spec.code),
+            )
             for label, (spec, names) in planners.items()
         ),
     ]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -71,6 +70,16 @@ def names(text: str) -> tuple[str, ...]:
     return tuple(part.strip() for part in text.split(",") if part.strip())
 
 
+def complete_planners(incomplete: str) -> list[str]:
+    """Lists of planners that begin with what was typed: the last name is completed, those before it stay."""
+    from planners import ALIASES, PLANNERS, ompl_planners, plugins
+
+    before, comma, begun = incomplete.rpartition(",")
+    taken = set(before.split(","))
+    names = [*PLANNERS, *ALIASES, *ompl_planners(), *plugins.offered()]
+    return [f"{before}{comma}{name}" for name in names if name.startswith(begun) and name not in taken]
+
+
 def within(option: str, value: _Number, low: float, high: float) -> _Number:
     """Return ``value`` if it is within the limits of its option."""
     if not low <= value <= high:
@@ -83,11 +92,6 @@ def usage(message: str) -> ValueError:
     from suite.errors import SuiteError
 
     return SuiteError(message)
-
-
-def cores() -> int:
-    """Cores this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def say(line: str) -> None:

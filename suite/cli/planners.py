@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Annotated, Literal
 
-def planners() -> None:
+import typer
+
+
+def planners(
+    format: Annotated[Literal["text", "json"], typer.Option(help="Lines for people, or an object.")] = "text",
+) -> None:
     """List planners with their settings, and predictors."""
-    from suite.show.listing import planners_text
+    from suite.show.listing import planners_json, planners_text
 
-    print(planners_text(), end="")
+    print(planners_text() if format == "text" else planners_json(), end="")

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
+from suite.backends.memory import CAN_BE_MEASURED
 from suite.backends.processes import Processes
+from suite.cli.cores import cores
 from suite.cli.options import (
     EXIT_INTERRUPTED,
     Arm,
@@ -16,7 +19,7 @@ from suite.cli.options import (
     Quiet,
     Seeds,
     Trials,
-    cores,
+    complete_planners,
     experiment_of,
     names,
     numbers,
@@ -26,6 +29,7 @@ from suite.cli.options import (
 )
 
 if TYPE_CHECKING:
+    from suite.backends.job import Backend
     from suite.experiment.experiment import Experiment
 
 
@@ -34,7 +38,11 @@ def run(
         Path | None, typer.Argument(help="Experiment file (.yaml, .json), or the manifest.json of a run.")
     ] = None,
     planners: Annotated[
-        str | None, typer.Option(help="Planners, such as 'temporal[horizon=3],rrt,pf'; see 'suite planners'.")
+        str | None,
+        typer.Option(
+            help="Planners, such as 'temporal[horizon=3],rrt,pf'; see 'suite planners'.",
+            autocompletion=complete_planners,
+        ),
     ] = None,
     preset: Annotated[
         str | None, typer.Option(help="Start from a named experiment (table1) or the manifest.json of a run.")
@@ -64,10 +72,20 @@ def run(
     scenarios: Annotated[
         list[Path] | None, typer.Option(help="Scenario file to use instead of a family; may be repeated.")
     ] = None,
-    workers: Annotated[int | None, typer.Option(help="Processes. [default: all cores]")] = None,
+    backend: Annotated[
+        Literal["local", "dask"], typer.Option(help="Where trials run: on this machine, or on a Dask cluster.")
+    ] = "local",
+    scheduler: Annotated[
+        str | None,
+        typer.Option(help="Address of the cluster's scheduler. [default: a cluster on this machine is started]"),
+    ] = None,
+    workers: Annotated[int | None, typer.Option(help="Processes on this machine. [default: all cores]")] = None,
     hang_limit_s: Annotated[
         float, typer.Option(help="A trial that takes longer is killed; a warm-up has 120 s at least.")
     ] = 300.0,
+    memory_limit_mb: Annotated[
+        float | None, typer.Option(help="A trial that takes more memory is killed. [default: no limit]")
+    ] = None,
     bounds: Annotated[
         bool,
         typer.Option("--bounds", help="Say what is possible: clairvoyant solves it, or a proof says that nobody can."),
@@ -92,9 +110,13 @@ def run(
     """
     n_workers = within("--workers", cores() if workers is None else workers, 1, 1024)
     within("--hang-limit-s", hang_limit_s, 1, 1e6)
+    if memory_limit_mb is not None:
+        _check_memory_limit(memory_limit_mb)
     within("--open-effort", open_effort, 1, 1000)
     if fresh and keep_stale:
         raise usage("--keep-stale: found beside --fresh, allowed one of them")
+    if scheduler is not None:
+        _refuse_beside_scheduler(backend, workers)
     if open_effort > 1 and not bounds:
         raise usage("--open-effort: found without --bounds, allowed with it")
     fields = {
@@ -120,7 +142,10 @@ def run(
     if dry_run:
         _foretell(asked(), file, out, n_workers, fresh=fresh, keep_stale=keep_stale)
         return
-    with Processes(n_workers) as processes:  # the first is on its way while this process imports what follows
+    with ExitStack() as stack:
+        # The first local process is on its way while this one imports what follows.
+        where = stack.enter_context(Processes(n_workers)) if backend == "local" else _cluster(scheduler, n_workers)
+        from suite.backends.job import Limits
         from suite.runner import RunInterrupted, run_experiment
 
         experiment = asked()
@@ -129,8 +154,8 @@ def run(
             summary = run_experiment(
                 experiment,
                 folder,
-                workers=processes,
-                hang_limit_s=hang_limit_s,
+                workers=where,
+                limits=Limits(hang_limit_s, memory_limit_mb),
                 fresh=fresh,
                 keep_stale=keep_stale,
                 quiet=quiet,
@@ -149,6 +174,26 @@ def run(
     print()
     for name in ("table.md", "table.csv", "trials.csv"):
         print(folder / name)
+
+
+def _check_memory_limit(memory_limit_mb: float) -> None:
+    if not CAN_BE_MEASURED:
+        raise usage("--memory-limit-mb: found it on a system that does not tell, allowed on Linux")
+    within("--memory-limit-mb", memory_limit_mb, 1, 1e9)
+
+
+def _refuse_beside_scheduler(backend: str, workers: int | None) -> None:
+    if backend != "dask":
+        raise usage("--scheduler: found beside --backend local, allowed with --backend dask")
+    if workers is not None:
+        raise usage("--workers: found beside --scheduler, allowed without: the cluster's own are used")
+
+
+def _cluster(scheduler: str | None, n_workers: int) -> Backend:
+    from suite.backends.cluster.head import DaskCluster
+    from suite.backends.warm_up import warm_up_parts
+
+    return DaskCluster(scheduler, n_workers, warm_up_parts)
 
 
 def _folder(experiment: Experiment, file: Path | None) -> Path:

@@ -57,7 +57,7 @@ def table(
 def _print(summary: pd.DataFrame, pairs: pd.DataFrame | None, pooled: Pooled | None, format: Format) -> None:
     from suite.show import text
     from suite.show.conditions import sentence
-    from suite.show.terminal import print_summary
+    from suite.show.terminal import print_pairs, print_summary
 
     if format == "json":
         print(text.as_json(summary, pairs, pooled))
@@ -72,4 +72,7 @@ def _print(summary: pd.DataFrame, pairs: pd.DataFrame | None, pooled: Pooled | N
         print(text.render(summary, format), end="")
     if pairs is not None:
         print()
-        print(text.render_pairs(pairs, "markdown" if format == "terminal" else format), end="")
+        if format == "terminal":
+            print_pairs(pairs)
+        else:
+            print(text.render_pairs(pairs, format), end="")

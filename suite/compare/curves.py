@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
+import numpy as np
 import pandas as pd
 
 from scenarios.spec import known_name
@@ -147,7 +148,7 @@ def _point(at: Any, group: pd.DataFrame, success: str) -> Point:
     low, high = wilson_interval(successes, trials)
     checks = (group["state_checks"].fillna(0) + group["motion_checks"].fillna(0)).median()
     return Point(
-        None if pd.isna(at) else at,
+        None if pd.isna(at) else at.item() if isinstance(at, np.generic) else at,  # a plain number, or a name
         trials,
         100 * successes / trials,
         100 * low,

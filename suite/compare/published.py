@@ -9,6 +9,7 @@ import pandas as pd
 from planners import parse_planner
 from scenarios import SpecError
 from suite.errors import SuiteError
+from suite.store.frames import read_columns
 
 COLUMNS = {
     "planner": "string",
@@ -18,6 +19,13 @@ COLUMNS = {
     "trials": "int64",
 }
 """Columns of a file of published results, and their types."""
+
+RANGES = {
+    "n_obstacles": (0, 1000),
+    "time_s": (0, float("inf")),
+    "success_percent": (0, 100),
+    "trials": (1, 1_000_000_000),
+}
 
 
 def published_file(name: str) -> Path:
@@ -29,17 +37,24 @@ def read_published(file: Path) -> pd.DataFrame:
     """Read a file of published results, one row per planner and number of obstacles.
 
     Raises:
-        SuiteError: The file cannot be read, lacks a column, or has two rows for one planner and number of obstacles.
+        FileError: The file cannot be read, or a value is not of its column's type.
+        SuiteError: It lacks a column, a value is missing or out of range, or two rows are for one planner, whatever
+            they call it, and number of obstacles.
     """
-    try:
-        published = pd.read_csv(file, dtype=COLUMNS)
-    except (OSError, ValueError) as error:
-        raise SuiteError(f"{file}: cannot be read: {error}") from None
+    published = read_columns(file, COLUMNS)
     missing = [name for name in COLUMNS if name not in published.columns]
     if missing:
         raise SuiteError(f"{file}: found no column {missing[0]}, allowed: {', '.join(COLUMNS)}")
-    if published.duplicated(["planner", "n_obstacles"]).any():
-        raise SuiteError(f"{file}: found two rows for one planner and n_obstacles, allowed: one")
+    if published["planner"].isna().any():
+        raise SuiteError(f"{file}: planner: found nothing, allowed: a name in every row")
+    for name, (low, high) in RANGES.items():
+        wrong = published[name][(published[name] < low) | (published[name] > high)]
+        if len(wrong):
+            raise SuiteError(f"{file}: {name}: found {wrong.iloc[0]:g}, allowed: {low:g} to {high:g}")
+    same = published.assign(planner=published["planner"].map(_identity)).duplicated(["planner", "n_obstacles"])
+    if same.any():
+        name, n = published.loc[same, ["planner", "n_obstacles"]].iloc[0]
+        raise SuiteError(f"{file}: found two rows for {name} and n_obstacles {n}, allowed: one")
     return published[list(COLUMNS)]
 
 

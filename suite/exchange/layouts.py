@@ -9,8 +9,9 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+from scenarios.reading import read_text
 from suite.errors import SuiteError
-from suite.exchange.text import number, read_text
+from suite.exchange.text import MAX_FILE_BYTES, number
 
 MAX_BODIES = 1000
 UNITS_M = {"mm": 1e-3, "cm": 1e-2, "m": 1.0}
@@ -48,9 +49,10 @@ def read_recording(file: Path, layout: str, fps: float) -> Recording:
         fps: Frames per second of layouts that count frames.
 
     Raises:
-        SuiteError: The file cannot be read, or a line does not fit its layout.
+        FileError: The file cannot be read.
+        SuiteError: A line does not fit its layout.
     """
-    text = read_text(file)
+    text = read_text(file, MAX_FILE_BYTES)
     reader = LAYOUTS[recognised(file, text) if layout == "auto" else layout]
     try:
         recording = reader(file, text, fps)

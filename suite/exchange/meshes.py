@@ -13,8 +13,9 @@ import numpy.typing as npt
 from pydantic import ValidationError
 
 from scenarios import Mesh, Obstacle, Still
+from scenarios.reading import open_regular, read_text
 from suite.errors import SuiteError, one_line
-from suite.exchange.text import read_bytes, read_text
+from suite.exchange.text import MAX_FILE_BYTES
 
 MAX_TRIANGLES = 2_000_000
 MAX_PIECES = 1000
@@ -34,7 +35,8 @@ def import_mesh(file: Path, unit_m: float, offset_m: tuple[float, float, float])
         offset_m: Added to every corner [m].
 
     Raises:
-        SuiteError: The file is no mesh, or has a piece that is flat or too large.
+        FileError: The file cannot be read.
+        SuiteError: It is no mesh, or has a piece that is flat or too large.
     """
     triangles = _stl(file) if file.suffix.lower() == ".stl" else _obj(file)
     if not 0 < len(triangles) <= MAX_TRIANGLES:
@@ -96,12 +98,13 @@ def _pieces(triangles: FloatArray) -> list[FloatArray]:
 
 def _stl(file: Path) -> FloatArray:
     """Triangles (k, 3, 3) of an STL file."""
-    data = read_bytes(file)
+    with open_regular(file, MAX_FILE_BYTES) as handle:
+        data = handle.read()
     count = int.from_bytes(data[80:84], "little") if len(data) >= 84 else -1
     if len(data) == 84 + 50 * count:
         record = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("rest", "<u2")])
         return np.frombuffer(data, record, offset=84)["corners"].astype(np.float64)
-    words = [line.split() for line in read_text(file).splitlines()]
+    words = [line.split() for line in read_text(file, MAX_FILE_BYTES).splitlines()]
     corners = [_point(file, k, word[1:]) for k, word in enumerate(words, start=1) if word[:1] == ["vertex"]]
     if len(corners) % 3:
         raise SuiteError(f"{file}: found {len(corners)} corners, allowed three for each triangle (truncated?)")
@@ -114,7 +117,7 @@ def _obj(file: Path) -> FloatArray:
         raise SuiteError(f"{file}: found suffix {file.suffix!r}, allowed .stl, .obj")
     points: list[list[float]] = []
     fans: list[tuple[int, int, int]] = []
-    for line, content in enumerate(read_text(file).splitlines(), start=1):
+    for line, content in enumerate(read_text(file, MAX_FILE_BYTES).splitlines(), start=1):
         word = content.split()
         if word[:1] == ["v"]:
             points.append(_point(file, line, word[1:4]))

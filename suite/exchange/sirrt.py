@@ -6,7 +6,6 @@ per frame; here a body keeps its orientation, so a box that turns becomes the sp
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Literal
@@ -15,8 +14,9 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from scenarios import Box, Obstacle, Scenario, Still, Track
+from scenarios.reading import read_json
 from suite.errors import SuiteError, one_line
-from suite.exchange.text import read_text
+from suite.exchange.text import MAX_FILE_BYTES
 from suite.exchange.tracks import Setting
 
 _Number = Annotated[float, Field(allow_inf_nan=False)]
@@ -56,16 +56,13 @@ def import_sirrt(file: Path, setting: Setting, note: Callable[[str], None]) -> S
         note: Told, a line each, what is not the same here.
 
     Raises:
-        SuiteError: The file is no such scene.
+        FileError: The file cannot be read, or is no JSON.
+        SuiteError: It is no such scene.
     """
     try:
-        scene = _Scene.model_validate(json.loads(read_text(file)))
+        scene = _Scene.model_validate(read_json(file, MAX_FILE_BYTES))
     except ValidationError as error:
         raise SuiteError(f"{file}: {one_line(error)}"[:300]) from None
-    except (ValueError, RecursionError) as error:
-        if isinstance(error, SuiteError):
-            raise
-        raise SuiteError(f"{file}: not valid JSON: {error}"[:200]) from None
     moving = [one for one in scene.obstacles if isinstance(one, _Moving)]
     if len(moving) < len(scene.obstacles):
         note(f"{file}: {len(scene.obstacles) - len(moving)} robots among the obstacles are left out")

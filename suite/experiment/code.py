@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeGuard
 
 DISTRIBUTION = "continuum-arm-suite"
 _PACKAGES = ("scenarios", "planners", "suite")
@@ -23,6 +23,11 @@ House = Mapping[str, Any]
 def house() -> dict[str, Any]:
     """The house as it is now."""
     return {"sources": source_hash(), "versions": versions()}
+
+
+def is_house(value: Any) -> TypeGuard[House]:
+    """Whether what a file says of a house can be one."""
+    return isinstance(value, dict) and isinstance(value.get("sources"), str) and isinstance(value.get("versions"), dict)
 
 
 def house_code(house: House) -> str:

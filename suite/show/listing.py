@@ -2,22 +2,70 @@
 
 from __future__ import annotations
 
+import json
 import textwrap
 from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from typing import Any
 
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
-from planners import ALIASES, PLANNERS, PREDICTORS, ompl_planners, ompl_refused, plugins
+from planners import ALIASES, PLANNERS, PREDICTORS, ArmPlanner, ompl_planners, ompl_refused, plugins
 from planners.isolation import Facts, facts_of
 from scenarios import SpecError
+
+WIDTH = 80
 
 
 def planners_text() -> str:
     """Every planner with its settings (type, default, meaning), then every predictor."""
-    return "\n".join(_lines()) + "\n"
+    return "\n".join(_folded(line) for line in _lines()) + "\n"
+
+
+def planners_json() -> str:
+    """The same as an object: ``planners``, ``aliases``, ``ompl``, ``offered``, ``predictors``."""
+    listed = {
+        "planners": {name: _as_values(planner) for name, planner in PLANNERS.items()},
+        "aliases": {alias: {"planner": name, "settings": values} for alias, (name, values) in ALIASES.items()},
+        "ompl": {name: _as_values(planner) for name, planner in ompl_planners().items()},
+        "offered": list(plugins.offered()),
+        "predictors": {name: predictor.summary for name, predictor in PREDICTORS.items()},
+    }
+    return json.dumps(listed, indent=1) + "\n"
+
+
+def _as_values(planner: type[ArmPlanner]) -> dict[str, Any]:
+    settings = {
+        key: {
+            "type": _kind(field),
+            "default": None if field.default is PydanticUndefined else field.default,
+            "meaning": field.description or "",
+        }
+        for key, field in planner.settings_model.model_fields.items()
+    }
+    return {
+        "summary": planner.summary,
+        "source": planner.source,
+        "is_bound": planner.is_bound,
+        "budget": list(planner.budget),
+        "settings": settings,
+    }
+
+
+def _kind(field: FieldInfo) -> str:
+    return getattr(field.annotation, "__name__", str(field.annotation))
+
+
+def _folded(line: str) -> str:
+    """A line in 80 columns, the rest of it further in."""
+    if len(line) <= WIDTH:
+        return line
+    inset = " " * (4 + len(line) - len(line.lstrip()))
+    return "\n".join(
+        textwrap.wrap(line, WIDTH, subsequent_indent=inset, break_on_hyphens=False, break_long_words=False)
+    )
 
 
 def _lines() -> Iterator[str]:
@@ -37,9 +85,8 @@ def _lines() -> Iterator[str]:
 def _settings(fields: dict[str, FieldInfo]) -> Iterator[str]:
     """A line each: type, default, meaning."""
     for key, field in fields.items():
-        kind = getattr(field.annotation, "__name__", str(field.annotation))
         default = "" if field.default is PydanticUndefined else f" = {field.default}"
-        yield f"      {key}: {kind}{default}  {field.description or ''}".rstrip()
+        yield f"      {key}: {_kind(field)}{default}  {field.description or ''}".rstrip()
 
 
 def _ompl_lines() -> Iterator[str]:

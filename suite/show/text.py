@@ -49,10 +49,8 @@ def shown_columns(summary: pd.DataFrame) -> list[Shown]:
     has_bound, is_known = summary["is_bound"].any(), summary["scenarios_possible"].notna().any()
     varied = varying(summary)
     columns = [
-        Shown("family", lambda row: "all" if pd.isna(row.family) else str(row.family))
-        if len(set(summary["family"])) > 1
-        else None,
-        Shown("obstacles", lambda row: "all" if pd.isna(row.n_obstacles) else str(row.n_obstacles)),
+        Shown("family", lambda row: _or_all(row.family)) if len(set(summary["family"])) > 1 else None,
+        Shown("obstacles", lambda row: _or_all(row.n_obstacles)),
         *(Shown(*column(summary, name)) for name in varied if name in WORLD_NAMES),
         Shown("planner", lambda row: f"{row.planner} (bound)" if row.is_bound else str(row.planner)),
         *(Shown(*column(summary, name)) for name in varied if name not in WORLD_NAMES),
@@ -93,12 +91,18 @@ def render(summary: pd.DataFrame, format: Format) -> str:
 
 def render_pairs(pairs: pd.DataFrame, format: Format) -> str:
     """A comparison in pairs in one of the formats for files."""
-    if format == "csv":
-        return as_csv(pairs)
+    return as_csv(pairs) if format == "csv" else _tabulated(*pair_cells(pairs), format)
+
+
+def pair_cells(pairs: pd.DataFrame) -> tuple[list[str], list[list[str]]]:
+    """Titles and rows of text of a comparison in pairs."""
     conditions = [Shown(*column(pairs, name)) for name in varying(pairs)]
     counts = ["scenarios", "only_planner", "only_reference"]
     rows = [
-        [str(pair.n_obstacles), *(condition.cell(pair) for condition in conditions)]
+        [
+            _or_all(pair.n_obstacles),
+            *(condition.cell(pair) for condition in conditions),
+        ]
         + [str(pair.planner), str(pair.reference)]
         + [str(getattr(pair, count)) for count in counts]
         + [f"{getattr(pair, p):.2g}" for p in ("p_mcnemar", "p_holm")]
@@ -106,7 +110,7 @@ def render_pairs(pairs: pd.DataFrame, format: Format) -> str:
     ]
     titles = ["obstacles", *(condition.title for condition in conditions), "planner", "reference"]
     titles += ["scenarios", "only planner", "only reference", "p", "p, Holm"]
-    return _tabulated(titles, rows, format)
+    return titles, rows
 
 
 def as_json(summary: pd.DataFrame, pairs: pd.DataFrame | None = None, pooled: Pooled | None = None) -> str:
@@ -133,6 +137,11 @@ def as_markdown_page(title: str, summary: pd.DataFrame) -> str:
 def _tabulated(titles: list[str], rows: list[list[str]], format: Format) -> str:
     style = {"markdown": "github", "latex": "latex_booktabs"}[format]
     return tabulate(rows, titles, tablefmt=style, disable_numparse=True) + "\n"
+
+
+def _or_all(value: Any) -> str:
+    """Missing where trials under several were pooled."""
+    return "all" if pd.isna(value) else str(value)
 
 
 def _success(verdict: str) -> Callable[[Any], str]:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import sys
+import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -10,10 +13,14 @@ from typing import Any
 import pandas as pd
 
 from planners import is_bound
+from scenarios import FileError
+from scenarios.reading import first_twice, read_text, unreadable
 from suite.auditor.verdicts import VERDICTS
 from suite.errors import SuiteError
 from suite.store.schema import old_margin
 from suite.trial.columns import COLUMN_NAMES, COLUMNS, CONDITIONS, SORTED_BY, Row
+
+MAX_CSV_BYTES = 1024**3
 
 _POSSIBLE = {f"scenarios_{answer}": "Int64" for answer in ("possible", "open", "impossible")}
 _NEW_IN_TABLES = {column.name: column.dtype for column in CONDITIONS} | {"stale": "int64"} | _POSSIBLE
@@ -60,7 +67,9 @@ def trials_frame(rows: Iterable[Row]) -> pd.DataFrame:
 
 def columns_frame(columns: Mapping[str, Sequence[Any]]) -> pd.DataFrame:
     """The same of rows that come as columns, in the order in which they come."""
-    return pd.DataFrame({name: pd.Series(_as_written(columns[name]), dtype=_DTYPES[name]) for name in columns})
+    return pd.DataFrame(
+        {name: pd.Series(_as_written(_DTYPES[name], columns[name]), dtype=_DTYPES[name]) for name in columns}
+    )
 
 
 def joined(frames: Iterable[pd.DataFrame], names: Sequence[str]) -> pd.DataFrame:
@@ -68,11 +77,11 @@ def joined(frames: Iterable[pd.DataFrame], names: Sequence[str]) -> pd.DataFrame
     return pd.concat([columns_frame(dict.fromkeys(names, ())), *frames], ignore_index=True)
 
 
-def _as_written(values: Iterable[Any]) -> list[Any]:
+def _as_written(dtype: str, values: Sequence[Any]) -> Sequence[Any]:
     """Numbers rounded; names and settings, which repeat in thousands of rows, each held once."""
-    return [
-        float(FLOAT_FORMAT % v) if isinstance(v, float) else sys.intern(v) if isinstance(v, str) else v for v in values
-    ]
+    if dtype == "float64":
+        return [None if value is None else float(FLOAT_FORMAT % value) for value in values]
+    return [None if value is None else sys.intern(value) for value in values] if dtype == "string" else values
 
 
 def trials_csv(trials: pd.DataFrame, *, header: bool = True) -> str:
@@ -84,9 +93,10 @@ def read_trials_csv(file: Path) -> pd.DataFrame:
     """Read what ``trials_csv`` wrote, now or before rows said as much as they do.
 
     Raises:
-        SuiteError: The file cannot be read, or a column is missing or holds something else than it should.
+        FileError: The file cannot be read, or a column holds something else than it should.
+        SuiteError: A column is missing.
     """
-    frame = _read_csv(file, {column.name: column.dtype for column in COLUMNS})
+    frame = read_columns(file, {column.name: column.dtype for column in COLUMNS})
     version = max((column.since for column in COLUMNS if column.name in frame), default=1)
     missing = [column.name for column in COLUMNS if column.name not in frame and column.since <= version]
     if missing:
@@ -105,9 +115,10 @@ def read_table_csv(file: Path) -> pd.DataFrame:
     """Read a summary as it was written, now or before tables said under which conditions.
 
     Raises:
-        SuiteError: The file cannot be read, or is no summary.
+        FileError: The file cannot be read.
+        SuiteError: It is no summary.
     """
-    frame = _read_csv(file, TABLE_TYPES)
+    frame = read_columns(file, TABLE_TYPES)
     missing = [name for name in TABLE_TYPES if name not in frame and name not in _NEW_IN_TABLES]
     if missing:
         raise SuiteError(f"{file}: found no column {missing[0]}, a table has one")
@@ -123,11 +134,27 @@ def _with_unknown(frame: pd.DataFrame, types: Mapping[str, str]) -> pd.DataFrame
     return frame.assign(**{name: pd.Series(empty, frame.index, dtype) for name, dtype in lacking.items()})
 
 
-def _read_csv(file: Path, types: Mapping[str, str]) -> pd.DataFrame:
+def read_columns(file: Path, types: Mapping[str, str]) -> pd.DataFrame:
+    """Read a CSV; its columns that ``types`` names have these types, an empty cell is a missing value.
+
+    Raises:
+        FileError: The file cannot be read, is larger than ``MAX_CSV_BYTES``, has a column twice or a line that does
+            not fit the header, or a value is not of its column's type.
+    """
+    text = read_text(file, MAX_CSV_BYTES)
     try:
-        return pd.read_csv(file, dtype=dict(types), keep_default_na=False, na_values=[""])
-    except (OSError, ValueError, TypeError) as error:
-        raise SuiteError(f"{file}: cannot be read: {error}"[:300]) from None
+        twice = first_twice(next(csv.reader(io.StringIO(text)), []))
+        if twice is not None:
+            raise FileError(f"{file}: found the column {twice!r} twice, allowed once")
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # lines that are too long, or whole numbers, would be cut
+            return pd.read_csv(
+                io.StringIO(text), dtype=dict(types), keep_default_na=False, na_values=[""], index_col=False
+            )
+    except FileError:
+        raise
+    except (csv.Error, ValueError, TypeError, OverflowError, Warning) as error:
+        raise unreadable(file, error) from None
 
 
 def refuse_gaps(trials: pd.DataFrame, file: Path) -> pd.DataFrame:

@@ -5,8 +5,10 @@ from __future__ import annotations
 import hashlib
 import io
 import json
+import re
 import sqlite3
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Any, NamedTuple, Self
@@ -15,11 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from suite.errors import SuiteError
-from suite.experiment.code import House
+from suite.experiment.code import House, is_house
 from suite.store.schema import open_to_read, open_to_write, remember_house, transaction
 from suite.trial.columns import COLUMN_NAMES, COLUMNS, CONDITIONS, SORTED_BY, Row, complete_row, plain_values
 from suite.trial.task import Code, TrialResult, TrialTask
 
+_HEADER = re.compile(rb"\{'descr': '<f8', 'fortran_order': (True|False), 'shape': \((\d{1,9}), (\d{1,9})\), \}")
 _NAMES = ", ".join(f'"{name}"' for name in COLUMN_NAMES)
 _SORTED = ", ".join(f'"{name}" NULLS LAST' for name in SORTED_BY)
 _LEAST_BYTES = 256  # of a row with its names, hashes and trajectory
@@ -69,6 +72,7 @@ class Journal:
         """
         self._file = file
         self._db = (open_to_read if read_only else open_to_write)(file, old_house)
+        self._inode = file.stat().st_ino
 
     def __enter__(self) -> Self:
         return self
@@ -138,7 +142,11 @@ class Journal:
 
     def houses(self) -> dict[str, House]:
         """What stands behind the hashes of houses."""
-        return {code: json.loads(text) for code, text in self._db.execute("SELECT * FROM houses")}
+        houses = {}
+        for code, text in self._db.execute("SELECT * FROM houses"):
+            with suppress(ValueError, TypeError, RecursionError):  # damaged: nobody knows what it was
+                houses[code] = json.loads(text)
+        return {code: house for code, house in houses.items() if is_house(house)}
 
     def ask(self, chosen: Mapping[str, Code], house: House | None) -> None:
         """Note what the present command asks for: keys of trials, and the code whose rows stand for them."""
@@ -172,7 +180,14 @@ class Journal:
         return digest.hexdigest()[:16]
 
     def add(self, task: TrialTask, result: TrialResult) -> None:
-        """Store one finished trial."""
+        """Store one finished trial.
+
+        Raises:
+            SuiteError: The file has been deleted: what is written into it now will be lost.
+            sqlite3.Error: It cannot be written, as on a full disk.
+        """
+        if not (self._file.exists() and self._file.stat().st_ino == self._inode):
+            raise SuiteError(f"{self._file}: found it deleted or replaced while the run went on, allowed to stay")
         row = complete_row(result.row)
         assert all(row[name] == value for name, value in task.identity.items())
         marks = ", ".join("?" * (len(COLUMNS) + 3))
@@ -222,12 +237,30 @@ class Journal:
         numbers = self._db.execute(f"SELECT number FROM shown ORDER BY {_SORTED}").fetchall()
         for number in numbers:
             scenario_id, planner, blob, *values = self._db.execute(row, number).fetchone()
-            try:
-                timed = np.load(io.BytesIO(blob), allow_pickle=False)
-                conditions = dict(zip(names, values, strict=True))
-                yield Executed(scenario_id, planner, timed[:, 0], timed[:, 1:], conditions)
-            except (ValueError, TypeError, EOFError, IndexError):
-                raise SuiteError(f"{self._file}: {scenario_id} {planner}: found no trajectory in it") from None
+            yield self._executed(scenario_id, planner, blob, dict(zip(names, values, strict=True)))
+
+    def kept(self, scenario_id: str | None = None) -> Iterator[tuple[Row, Executed]]:
+        """Rows that are asked for, of one scenario or of all, with what was executed, sorted as in the tables.
+
+        Raises:
+            SuiteError: A value is not of its column's type, or what is stored is no trajectory.
+        """
+        where, given = ("", []) if scenario_id is None else ("WHERE scenario_id = ?", [scenario_id])
+        numbers = self._db.execute(f"SELECT number FROM shown {where} ORDER BY {_SORTED}", given).fetchall()
+        for number in numbers:
+            *values, blob = self._db.execute(
+                f"SELECT {_NAMES}, executed FROM trials WHERE number = ?", number
+            ).fetchone()
+            row = self._complete(values)
+            conditions = {column.name: row[column.name] for column in CONDITIONS}
+            yield row, self._executed(row["scenario_id"], row["planner"], blob, conditions)
+
+    def _executed(self, scenario_id: str, planner: str, blob: bytes, conditions: Row) -> Executed:
+        try:
+            timed = _from_bytes(blob)
+            return Executed(scenario_id, planner, timed[:, 0], timed[:, 1:], conditions)
+        except (ValueError, TypeError, EOFError, IndexError):
+            raise SuiteError(f"{self._file}: {scenario_id} {planner}: found no trajectory in it") from None
 
 
 def _to_bytes(result: TrialResult) -> bytes:
@@ -236,3 +269,17 @@ def _to_bytes(result: TrialResult) -> bytes:
     timed = np.column_stack([result.times_s, result.configurations_rad])
     np.save(buffer, timed.astype(np.float64), allow_pickle=False)
     return buffer.getvalue()
+
+
+def _from_bytes(blob: bytes) -> NDArray[np.float64]:
+    """The same again; by hand, since what NumPy raises over a damaged header, or allocates for it, knows no bounds.
+
+    Raises:
+        ValueError, TypeError: It is something else.
+    """
+    start = 10 + int.from_bytes(blob[8:10], "little")
+    header = _HEADER.match(blob[10:start])
+    if header is None:
+        raise ValueError("found no header of an array")
+    order, *shape = header.groups()
+    return np.frombuffer(blob[start:], "<f8").reshape([int(n) for n in shape], order="F" if order == b"True" else "C")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
 import sqlite3
@@ -11,14 +10,16 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from scenarios.reading import read_json
 from suite.errors import SuiteError
-from suite.experiment.code import House, changes
-from suite.experiment.manifest import Manifest
+from suite.experiment.code import House, changes, is_house
+from suite.experiment.manifest import MAX_MANIFEST_BYTES, Manifest
 from suite.files import write_text
 from suite.store.frames import columns_frame, joined, read_table_csv, read_trials_csv, refuse_gaps
 from suite.store.growth import Standing, settle
 from suite.store.journal import Journal
 from suite.store.schema import is_journal
+from suite.store.volume import held
 from suite.trial.columns import COLUMN_NAMES
 from suite.trial.lineup import Tasks
 from suite.trial.task import Code
@@ -38,15 +39,12 @@ def read_manifest(folder: Path) -> Manifest | None:
     """The manifest of the run in ``folder``, None if there is none.
 
     Raises:
-        SuiteError: The file cannot be read.
+        SuiteError, FileError: The file cannot be read, or is no manifest.
     """
     file = folder / MANIFEST
-    try:
-        manifest = json.loads(file.read_text(encoding="utf-8"))
-    except (FileNotFoundError, NotADirectoryError):
+    if not os.path.lexists(file):
         return None
-    except (OSError, ValueError) as error:
-        raise SuiteError(f"{file}: cannot be read: {error}") from None
+    manifest = read_json(file, MAX_MANIFEST_BYTES)
     if not isinstance(manifest, dict) or not isinstance(manifest.get("experiment"), dict):
         raise SuiteError(f"{file}: found no experiment in it, allowed: the manifest of a run")
     return manifest
@@ -55,7 +53,8 @@ def read_manifest(folder: Path) -> Manifest | None:
 def planner_order(folder: Path) -> tuple[str, ...]:
     """Planner labels in the order in which they were asked for; empty if unknown."""
     manifest = read_manifest(folder)
-    return tuple(present_codes(manifest)) or tuple((manifest or {}).get("experiment", {}).get("planners", ()))
+    asked = (manifest or {}).get("experiment", {}).get("planners", ())
+    return tuple(present_codes(manifest)) or (tuple(map(str, asked)) if isinstance(asked, list) else ())
 
 
 def present_codes(manifest: Manifest | None) -> dict[str, Code]:
@@ -89,7 +88,7 @@ def read_trials(folder: Path, names: Sequence[str] = COLUMN_NAMES) -> pd.DataFra
             with open_journal(folder) as journal:
                 return refuse_gaps(joined(map(columns_frame, journal.columns(names)), names), folder / JOURNAL)
         except (OSError, sqlite3.Error) as error:
-            raise SuiteError(f"{folder / JOURNAL}: cannot be read: {error}"[:300]) from None
+            raise SuiteError(f"{folder / JOURNAL}: cannot be read: {error}{_damaged(error)}") from None
     return refuse_gaps(read_trials_csv(folder / TRIALS), folder / TRIALS) if (folder / TRIALS).exists() else None
 
 
@@ -140,7 +139,7 @@ def open_run(
         try:
             _refuse_strangers(folder)
             folder.mkdir(parents=True, exist_ok=True)
-            stack.enter_context(_held(folder))
+            stack.enter_context(held(folder))
             if fresh:
                 _forget(folder, manifest)
             house = {part: manifest[part] for part in ("sources", "versions")}
@@ -151,10 +150,15 @@ def open_run(
             journal.complete(tasks)
             _write_manifest(folder, manifest)
         except (OSError, sqlite3.Error) as error:
-            raise SuiteError(
-                f"{folder}: cannot be read or written: {getattr(error, 'strerror', None) or error}"
-            ) from None
+            reason = getattr(error, "strerror", None) or error
+            raise SuiteError(f"{folder}: cannot be read or written: {reason}{_damaged(error)}") from None
         yield journal, standing
+
+
+def _damaged(error: Exception) -> str:
+    """What to do about a journal of which a part is lost."""
+    is_damaged = isinstance(error, sqlite3.DatabaseError) and not isinstance(error, sqlite3.OperationalError)
+    return "; suite merge saves what can be read, run --fresh starts over" if is_damaged else ""
 
 
 def standing_of(folder: Path, manifest: Manifest, tasks: Tasks, *, keep_stale: bool) -> Standing:
@@ -190,10 +194,8 @@ def _standing(folder: Path, old_house: House | None, house: House, tasks: Tasks,
 def _old_house(folder: Path) -> House | None:
     """What made the rows of a run of the first version: its manifest says it, once for all of them."""
     manifest = read_manifest(folder) or {}
-    sources, versions = manifest.get("sources"), manifest.get("versions")
-    if "schema_version" in manifest or not (isinstance(sources, str) and isinstance(versions, dict)):
-        return None
-    return {"sources": sources, "versions": versions}
+    house = {part: manifest.get(part) for part in ("sources", "versions")}
+    return house if is_house(house) and "schema_version" not in manifest else None
 
 
 def _forget(folder: Path, manifest: Manifest) -> None:
@@ -216,17 +218,3 @@ def _refuse_strangers(folder: Path) -> None:
     others = [entry.name for entry in folder.iterdir() if not entry.name.startswith(".")]
     if others and MANIFEST not in others and not (JOURNAL in others and is_journal(folder / JOURNAL)):
         raise SuiteError(f"{folder}: found {others[0]} and no {MANIFEST}, allowed: an empty folder or that of a run")
-
-
-@contextmanager
-def _held(folder: Path) -> Iterator[None]:
-    """Hold a lock on the folder itself; it goes with the process, however that ends."""
-    handle = os.open(folder, os.O_RDONLY)
-    try:
-        try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise SuiteError(f"{folder}: another process is running in it, allowed: one at a time") from None
-        yield
-    finally:
-        os.close(handle)

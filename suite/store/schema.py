@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 import json
+import shutil
 import sqlite3
+import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import closing, contextmanager
 from pathlib import Path
 
 from planners import is_bound
+from scenarios import UserError
+from scenarios.reading import open_regular
 from suite.errors import SuiteError
 from suite.experiment.code import House, house_code
+from suite.store.volume import is_held, is_remote
 from suite.trial.columns import COLUMN_NAMES, COLUMNS, KEY_NAMES, SCHEMA_VERSION, trial_key
 from suite.trial.task import UNKNOWN
 
 APPLICATION_ID = 0x41524D53
 """What a database says in its header that is a journal of this suite; those of the first version say nothing."""
+
+MAX_FILE_BYTES = 1024**4
 
 _SQL_TYPES = {"string": "TEXT", "boolean": "INTEGER", "Int64": "INTEGER", "float64": "REAL"}
 _OLD_NAMES = {column.name for column in COLUMNS if column.since == 1} | {"executed"}
@@ -75,7 +82,7 @@ def is_journal(file: Path) -> bool:
     try:
         with closing(_read_only(file)) as db:
             return _version(file, db) >= 0
-    except (SuiteError, sqlite3.Error):
+    except (UserError, sqlite3.Error):
         return False
 
 
@@ -93,8 +100,10 @@ def open_to_write(file: Path, old_house: House | None = None) -> sqlite3.Connect
         for rest in ("-wal", "-shm"):  # of a journal that was deleted, by a process that was killed before it got here
             file.with_name(file.name + rest).unlink(missing_ok=True)
     db = sqlite3.connect(file, isolation_level=None)  # every statement is a transaction of its own
-    db.execute("PRAGMA journal_mode = WAL")
-    db.execute("PRAGMA synchronous = NORMAL")
+    # A log of changes is shared through memory, which machines do not share.
+    mode, sync = ("DELETE", "FULL") if is_remote(file.parent) else ("WAL", "NORMAL")
+    db.execute(f"PRAGMA journal_mode = {mode}")
+    db.execute(f"PRAGMA synchronous = {sync}")
     if version < SCHEMA_VERSION:
         with transaction(db):
             if version == 1:
@@ -139,10 +148,22 @@ def old_margin(planner: str) -> float:
 
 
 def _read_only(file: Path) -> sqlite3.Connection:
-    """Without a log beside it a database is taken as it is: SQLite would otherwise make files to share it."""
+    """Open a database as it is; SQLite would otherwise make files beside it, or change what is in them."""
+    open_regular(file, MAX_FILE_BYTES).close()
     log = file.with_name(f"{file.name}-wal")
-    has_log = log.exists() and log.stat().st_size > 0
-    how = "mode=ro" if has_log else "mode=ro&immutable=1"
+    if not (log.exists() and log.stat().st_size > 0):
+        return _connect(file, "mode=ro&immutable=1")
+    if is_held(file.parent):  # whoever writes it shares it
+        return _connect(file, "mode=ro")
+    with tempfile.TemporaryDirectory() as folder:  # left by a run that was killed: SQLite would clear up
+        for there in (file, log):
+            shutil.copyfile(there, Path(folder, there.name))
+        db = _connect(Path(folder, file.name), "mode=rw")
+        db.execute("PRAGMA user_version").fetchone()  # opens what is about to lose its name
+        return db
+
+
+def _connect(file: Path, how: str) -> sqlite3.Connection:
     return sqlite3.connect(f"{file.resolve().as_uri()}?{how}", uri=True, isolation_level=None)
 
 
@@ -153,7 +174,10 @@ def _version(file: Path, db: sqlite3.Connection) -> int:
     )
     if application == APPLICATION_ID and version > SCHEMA_VERSION:
         raise SuiteError(f"{file}: found a journal of version {version}, allowed up to {SCHEMA_VERSION}: update suite")
-    names = {name for _, name, *_ in db.execute("PRAGMA table_info(trials)")}
+    try:
+        names = {name for _, name, *_ in db.execute("PRAGMA table_info(trials)")}
+    except UnicodeDecodeError:  # damaged, and not what SQLite looks for
+        names = set()
     if application == APPLICATION_ID and version >= 2 and {c.name for c in COLUMNS if c.since <= version} < names:
         return int(version)
     if application == version == 0:

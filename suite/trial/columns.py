@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import reprlib
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Literal, NamedTuple
 
@@ -17,11 +18,15 @@ from suite.auditor.verdicts import VERDICTS
 DType = Literal["string", "boolean", "Int64", "float64"]
 """Names of the pandas types that can hold a missing value."""
 
+LONGEST_TEXT = 1000
+"""Characters of a text that was measured."""
+
 SCHEMA_VERSION = 3
 """Version of the columns below; what an older version lacks is None when its rows are read."""
 
 OUTCOMES = (
-    "reached", "collided", "timeout", "stuck", "planner_error", "planner_hung", "worker_lost", "invalid_scenario",
+    "reached", "collided", "timeout", "stuck", "planner_error", "planner_hung", "planner_memory", "worker_lost",
+    "invalid_scenario",
 )  # fmt: skip
 
 
@@ -150,6 +155,31 @@ def complete_row(values: Mapping[str, Any]) -> Row:
     return {column.name: _plain(column.dtype, values.get(column.name)) for column in COLUMNS}
 
 
+def checked_measurements(values: Mapping[str, Any]) -> Row:
+    """The measured columns, if every value is one that its column can hold; counts are not negative.
+
+    Raises:
+        ValueError: One is not; the message names the column, what was found and what is allowed.
+    """
+    if values.get("outcome") not in OUTCOMES:
+        raise ValueError(f"outcome: found {reprlib.repr(values.get('outcome'))}, allowed {', '.join(OUTCOMES)}")
+    for column in MEASURED:
+        value = values.get(column.name)
+        if not (value is None or value != value or _IS_HELD[column.dtype](value)):
+            raise ValueError(f"{column.name}: found {reprlib.repr(value)}, allowed {_ALLOWED[column.dtype]}")
+    return {column.name: _plain(column.dtype, values.get(column.name)) for column in MEASURED}
+
+
+def _is_storable(value: Any) -> bool:
+    if not isinstance(value, str) or len(value) > LONGEST_TEXT or "\0" in value:
+        return False
+    try:
+        value.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
+
+
 def plain_values(name: str, values: Iterable[Any]) -> list[Any]:
     """Values of the column ``name`` as ``complete_row`` makes them, many rows at once.
 
@@ -172,6 +202,19 @@ def _plain(dtype: DType, value: Any) -> str | bool | int | float | None:
         return None
     return _PLAIN_TYPES[dtype](value)
 
+
+_IS_HELD: dict[DType, Callable[[Any], bool]] = {
+    "string": _is_storable,
+    "boolean": lambda value: isinstance(value, bool),
+    "Int64": lambda value: type(value) is int and 0 <= value < 2**63,
+    "float64": lambda value: isinstance(value, int | float),
+}
+_ALLOWED: dict[DType, str] = {
+    "string": f"at most {LONGEST_TEXT} characters that can be stored",
+    "boolean": "true or false",
+    "Int64": "a whole number from 0 to 2**63 - 1",
+    "float64": "a number",
+}
 
 _PLAIN_TYPES: dict[DType, Callable[[Any], str | bool | int | float]] = {
     "string": str,

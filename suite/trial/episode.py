@@ -6,6 +6,7 @@ time limit; then everything that was executed is audited against the true motion
 """
 
 import time
+from collections.abc import Callable
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from suite.auditor import Audit, audit, collides
 from suite.auditor.verdicts import Kind, contact_columns
 from suite.trial.execution import Execution, PathError, check_path
 from suite.trial.impossibility import impossibility
+from suite.trial.look import Look
 from suite.trial.metrics import smoothness_bending_rad, smoothness_paper_rad, tip_path_length_m
 from suite.trial.observation import Observer
 from suite.trial.task import TrialResult, TrialTask, failed_trial, trial_row
@@ -23,8 +25,8 @@ STUCK_S = 10.0
 """An arm that has not moved for this long when time runs out is called stuck."""
 
 
-def run_trial(task: TrialTask) -> TrialResult:
-    """Run one planner on one scenario and judge what was executed."""
+def run_trial(task: TrialTask, watch: Callable[[Look], object] | None = None) -> TrialResult:
+    """Run one planner on one scenario and judge what was executed; ``watch`` is told of every step."""
     started = time.perf_counter()
     scenario = task.scenario  # no planner ever sees this one: what it is handed, it may change
     if not start_is_free(scenario):
@@ -38,11 +40,14 @@ def run_trial(task: TrialTask) -> TrialResult:
     outcome, message = "", ""
     while not (outcome or execution.has_arrived):
         observation = observer.until(execution.now_s)
+        asked = len(solves)
         try:
             _plan_if_due(session, execution, observation, solves)
         except PathError as error:
             outcome, message = "planner_error", str(error)
             break
+        if watch is not None:
+            watch(Look(execution.now_s, session.expected(), solves[-1] if len(solves) > asked else None))
         execution.step()
         if collides(scenario, execution.q, execution.now_s) and not execution.has_arrived:
             outcome = "collided"

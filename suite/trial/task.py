@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from scenarios.families import FAMILIES
 from suite.auditor.verdicts import VERDICTS
-from suite.trial.columns import Row, complete_row, trial_key
+from suite.trial.columns import MEASURED, Row, checked_measurements, complete_row, trial_key
 
 if TYPE_CHECKING:
     from planners import Failure, PlannerSpec
@@ -123,6 +123,32 @@ def failed_trial(task: TrialTask, failure: Failure, trial_wall_s: float) -> Tria
     measured = {"outcome": failure.outcome, "message": failure.message, "trial_wall_s": trial_wall_s, **verdicts}
     nothing = np.empty(0), np.empty((0, len(task.scenario.start_rad)))
     return TrialResult(trial_row(task, measured), *nothing, failure.traceback)
+
+
+class RowError(ValueError):
+    """A result that cannot be stored; the message says why."""
+
+
+def checked_result(task: TrialTask, result: TrialResult) -> TrialResult:
+    """The result with ``task``'s own identity, if what was measured and executed is what its columns hold.
+
+    A planner shares the process in which both were made.
+
+    Raises:
+        RowError: It is not.
+    """
+    measured = {column.name: result.row.get(column.name) for column in MEASURED}
+    try:
+        row = complete_row(task.identity | checked_measurements(measured))
+        times, configurations = (np.asarray(a, np.float64) for a in (result.times_s, result.configurations_rad))
+    except (ValueError, TypeError) as error:
+        raise RowError(str(error)) from None
+    allowed = (len(times), len(task.scenario.start_rad))
+    if times.ndim != 1 or (configurations.shape != allowed and len(times)):
+        raise RowError(f"executed: found shape {configurations.shape}, allowed {allowed}")
+    if not (np.isfinite(times).all() and np.isfinite(configurations).all()):
+        raise RowError("executed: found a number that is not finite, allowed finite states")
+    return TrialResult(row, times, configurations.reshape(allowed), result.traceback)
 
 
 def _arm_text(arm: ContinuumArm) -> str:

@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from planners import ALIASES, PLANNERS, PlannerSpec, check_fit, parse_planner, split_specs
+from planners.spec import planner_class
 from scenarios import ContinuumArm, ScenarioError, SpecError
 
 
@@ -140,3 +141,38 @@ def test_a_margin_that_is_asked_for_is_every_planners_but_a_bounds() -> None:
     rrt, temporal, bound = parse_planner("rrt"), parse_planner("temporal"), parse_planner("clairvoyant")
     assert [spec.margin_for(None) for spec in (rrt, temporal, bound)] == [1.0, 0.0, 0.0]
     assert [spec.margin_for(1.5) for spec in (rrt, temporal, bound)] == [1.5, 1.5, 0.0]
+
+
+def test_a_budget_scales_what_the_planner_declares_and_nothing_else() -> None:
+    for name in [*PLANNERS, "ompl.KPIECE1"]:
+        planner = planner_class(name)
+        if not planner.budget:
+            with pytest.raises(SpecError, match=f"^{name}: found setting 'budget', allowed"):
+                parse_planner(f"{name}[budget=2]")
+            continue
+        whole, half = (
+            parse_planner(name).settings.model_dump(),
+            parse_planner(f"{name}[budget=0.5]").settings.model_dump(),
+        )
+        assert {key for key in whole if whole[key] != half[key]} == set(planner.budget)
+        for key in planner.budget:
+            assert half[key] == max(1, round(0.5 * whole[key]))
+    assert parse_planner("rrt[iterations=500,budget=0.1]").settings.iterations == 50
+    assert parse_planner("rrt[budget=1]").settings == parse_planner("rrt").settings
+    assert parse_planner("rrt[budget=0.1]").label == "rrt[budget=0.1]"
+
+
+@pytest.mark.parametrize(
+    ("spec", "line"),
+    [
+        ("rrt[budget=x]", r"rrt\[budget\]: found 'x', allowed a number above 0 and up to 1000"),
+        ("rrt[budget=0]", r"rrt\[budget\]: found '0', allowed .*"),
+        ("rrt[budget=nan]", r"rrt\[budget\]: found 'nan', allowed .*"),
+        ("rrt[budget=1e9]", r"rrt\[budget\]: found '1e9', allowed .*"),
+        ("strrt[budget=0.001]", r"strrt\[budget=0\.001\]\[nodes\]: found 4, allowed: .*"),
+        ("rrt[iteration=3]", r"rrt: found setting 'iteration', allowed .*; nearest: iterations"),
+    ],
+)
+def test_a_budget_that_cannot_be_is_one_line(spec: str, line: str) -> None:
+    with pytest.raises(SpecError, match=f"^{line}$"):
+        parse_planner(spec)

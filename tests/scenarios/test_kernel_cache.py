@@ -81,9 +81,9 @@ def test_kernel_files_import_in_the_one_way_that_the_hash_follows() -> None:
                 assert node.level == 0, file
 
 
-def test_the_cache_is_where_the_user_wants_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("SUITE_CACHE_DIR", "/somewhere/else")
-    assert jit.cache_folder() == Path("/somewhere/else")
+def test_the_cache_is_where_the_user_wants_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SUITE_CACHE_DIR", str(tmp_path / "somewhere" / "else"))
+    assert jit.cache_folder() == tmp_path / "somewhere" / "else"
     monkeypatch.delenv("SUITE_CACHE_DIR")
     assert jit.cache_folder().name == "continuum-arm-suite"
 
@@ -157,3 +157,58 @@ def test_where_files_cannot_be_locked_kernels_still_compile(house: Path, monkeyp
 
     monkeypatch.setattr(jit.fcntl, "flock", refuse)
     assert importlib.import_module("cache_probe.caller").scaled(10) == 20
+
+
+def says(folder: Path, *, environment: dict[str, str] | None = None) -> tuple[str, str]:
+    """What a process finds ten times the factor to be, and what it says on the way."""
+    given = {name: value for name, value in os.environ.items() if name not in {"SUITE_CACHE_DIR", "HOME"}}
+    code = f"""
+import sys
+sys.path[:0] = {[str(folder.parent), *sys.path]!r}
+from pathlib import Path
+from scenarios.kernels import jit
+jit._ROOT = Path({str(folder.parent)!r})
+from cache_probe.caller import scaled
+print(scaled(10))
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", code], env=given | (environment or {}), capture_output=True, text=True, check=True
+    )
+    return done.stdout.strip(), done.stderr
+
+
+@pytest.mark.parametrize("how", ["a file", "no home"])
+def test_a_cache_that_cannot_be_used_is_never_a_cache_without_the_key(house: Path, tmp_path: Path, how: str) -> None:
+    (tmp_path / "file").touch()
+    environment = {"SUITE_CACHE_DIR": str(tmp_path / "file")} if how == "a file" else {"HOME": str(tmp_path / "file")}
+    answer, said = says(house, environment=environment)
+    assert answer == "20"
+    assert said.count("\n") == 1
+    assert "SUITE_CACHE_DIR" in said
+    assert not Path(said.rpartition(" ")[2].strip()).exists()
+    (house / "callee.py").write_text(CALLEE.format(factor=101))
+    assert says(house, environment=environment)[0] == "1010"
+    assert not list(house.rglob("*.nbi"))
+
+
+@pytest.mark.parametrize(("suffix", "size"), [(".nbi", 0), (".nbi", 30), (".nbc", 0), (".nbc", 100)])
+def test_what_was_cut_off_is_compiled_again(house: Path, tmp_path: Path, suffix: str, size: int) -> None:
+    environment = {"SUITE_CACHE_DIR": str(tmp_path / "cache")}
+    assert says(house, environment=environment) == ("20", "")
+    files = sorted((tmp_path / "cache").rglob(f"*{suffix}"))
+    whole = [file.stat().st_size for file in files]
+    assert len(files) == 2
+    for file in files:
+        file.write_bytes(file.read_bytes()[:size])
+    assert says(house, environment=environment) == ("20", "")
+    assert [file.stat().st_size for file in files] == whole
+
+
+def test_machine_code_with_a_wrong_bit_is_not_run(house: Path, tmp_path: Path) -> None:
+    environment = {"SUITE_CACHE_DIR": str(tmp_path / "cache")}
+    assert says(house, environment=environment) == ("20", "")
+    for file in (tmp_path / "cache").rglob("*.nbc"):
+        code = bytearray(file.read_bytes())
+        code[len(code) // 2] ^= 1
+        file.write_bytes(code)
+    assert says(house, environment=environment) == ("20", "")

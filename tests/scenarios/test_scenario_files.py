@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from strategies import scenarios
 
-from scenarios import Obstacle, Orbit, Scenario, ScenarioError, Track, files, load_scenarios, save_scenarios
+from scenarios import Obstacle, Orbit, Scenario, Track, UserError, files, load_scenarios, save_scenarios
 
 SUFFIXES = [".yaml", ".yml", ".json", ".jsonl"]
 
@@ -110,7 +110,7 @@ WRONG_FIELDS = {
 
 
 def the_error(file: Path) -> str:
-    with pytest.raises(ScenarioError) as caught:
+    with pytest.raises(UserError) as caught:
         load_scenarios(file)
     message = str(caught.value)
     assert message.startswith(f"{file}: ")
@@ -247,12 +247,12 @@ def test_a_folder(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["scenarios.toml", "scenarios", "scenarios.yaml.gz"])
 def test_a_wrong_suffix_lists_the_right_ones(tmp_path: Path, name: str) -> None:
     assert ".yaml, .yml, .json, .jsonl" in the_error(tmp_path / name)
-    with pytest.raises(ScenarioError, match=r"\.jsonl"):
+    with pytest.raises(UserError, match=r"\.jsonl"):
         save_scenarios(tmp_path / name, [FIXED])
 
 
 def test_a_place_that_cannot_be_written(tmp_path: Path) -> None:
-    with pytest.raises(ScenarioError, match="cannot be written"):
+    with pytest.raises(UserError, match="cannot be written"):
         save_scenarios(tmp_path / "no such folder" / "a.yaml", [FIXED])
 
 
@@ -277,7 +277,7 @@ def test_any_value_in_any_field_is_taken_or_refused_in_one_line(tmp_path: Path, 
     file.write_text(json.dumps(content(**{field: value})))
     try:
         (loaded,) = load_scenarios(file)
-    except ScenarioError:
+    except UserError:
         assert field in the_error(file) or "scenario: " in the_error(file)
     else:
         assert json.loads(json.dumps(loaded.model_dump(mode="json"), allow_nan=False))

@@ -48,14 +48,23 @@ def test_seeds_stay_apart_and_scenarios_come_along() -> None:
     for name in merged.trials["scenario_id"].unique():
         assert merged.scenario(name).content_hash in set(merged.trials["scenario_hash"])
     manifest = json.loads(Path("merged", "manifest.json").read_text())
-    assert manifest["experiment"] == {}  # none asks for both
+    assert manifest["experiment"]["seed"] == [1, 2]
     assert [part["experiment"]["seed"] for part in manifest["merged"]] == [1, 2]
+    assert run_with_fakes(Path("merged"), seed=[1, 2], trials=2) == []  # nothing is missing
     assert len(merged.trajectory(merged.trials["scenario_id"][0], "pf").times_s) == 3
+
+
+def test_runs_that_no_experiment_asks_for_have_none() -> None:
+    run_with_fakes(Path("one"), seed=1, trials=1)
+    run_with_fakes(Path("two"), seed=2, trials=1, noise_mm=3.0)
+    suite.merge(["one", "two"], "merged")
+    assert json.loads(Path("merged", "manifest.json").read_text())["experiment"] == {}
+    assert len(suite.load("merged").table()) == 8
 
 
 def test_the_same_run_from_two_machines_is_one(capfd) -> None:
     run_with_fakes(Path("here"))
-    run_with_fakes(Path("there"), in_processes=True)  # other timings, in another order
+    run_with_fakes(Path("there"), where=2)  # other timings, in another order
     suite.merge(["here", "there"], "merged")
     assert contents(Path("merged")) == contents(Path("here"))
     assert "there: found no trial that the runs named before do not have" in capfd.readouterr().err

@@ -43,6 +43,7 @@ class PRMPlanner(ReplanningPlanner):
 
     name = "prm"
     settings_model = PRMSettings
+    budget = ("milestones", "motions")
     summary = "OMPL's roadmap, searched for the earliest arrival among the predicted obstacles"
     source = "Kavraki et al. 1996; van den Berg et al. 2006"
 

@@ -9,6 +9,8 @@ import functools
 import hashlib
 import math
 import os
+import shutil
+from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
@@ -98,36 +100,56 @@ def enumerated_space(arm: ContinuumArm, spacing_rad: float) -> EnumeratedSpace:
         ScenarioError: The lattice would hold more than ``MAX_CONFIGURATIONS``.
     """
     bends = lattice_for(arm, spacing_rad)
-    # One cube to spare: a tip on the far face of the last cube still has a number.
-    half = math.ceil(arm.length_m / CUBE_M) + 1
+    half = _half(arm)
     source = source_hash(Path(_kernels.__file__))
     key = f"{source}/{bends.tobytes().hex()}/{arm.n_sections}/{arm.section_length_m}/{CUBE_M}"
     folder = cache_folder() / "configurations" / hashlib.sha256(key.encode()).hexdigest()[:16]
-    if not folder.is_dir():
-        cubes = _kernels.enumerate_cubes(bends, arm.n_sections, arm.section_length_m, CUBE_M, half)
-        _store(folder, *_kernels.group_by_cube(cubes, (2 * half) ** 3))
     table = _kernels.arc_table(bends, arm.section_length_m)
-    return EnumeratedSpace(bends, table, arm.n_sections, CUBE_M, half, *_mapped(folder))
+    return EnumeratedSpace(bends, table, arm.n_sections, CUBE_M, half, *_groups(folder, arm, spacing_rad))
 
 
 @functools.lru_cache(maxsize=4)  # every trial asks
-def _mapped(folder: Path) -> tuple[IntArray, IntArray]:
-    """Offsets and codes, mapped, not read: worker processes share the pages. Kernels want plain arrays."""
-    offsets, codes = (
-        np.asarray(np.load(folder / f"{name}.npy", mmap_mode="r", allow_pickle=False)) for name in ("offsets", "codes")
-    )
-    return offsets, codes
+def _groups(folder: Path, arm: ContinuumArm, spacing_rad: float) -> tuple[IntArray, IntArray]:
+    """Offsets and codes, out of the cache or into it."""
+    found = _mapped(folder)
+    if found is None:
+        half = _half(arm)
+        cubes = _kernels.enumerate_cubes(
+            lattice_for(arm, spacing_rad), arm.n_sections, arm.section_length_m, CUBE_M, half
+        )
+        found = _kernels.group_by_cube(cubes, (2 * half) ** 3)
+        _store(folder, *found)
+    return _mapped(folder) or found
+
+
+def _half(arm: ContinuumArm) -> int:
+    """Cubes from the middle to the edge; with one to spare, a tip on the far face of the last still has a number."""
+    return math.ceil(arm.length_m / CUBE_M) + 1
+
+
+def _mapped(folder: Path) -> tuple[IntArray, IntArray] | None:
+    """Offsets and codes, mapped, not read: worker processes share the pages. Kernels want plain arrays.
+
+    None if they are not there, or cut off.
+    """
+    try:
+        offsets, codes = (
+            np.asarray(np.load(folder / f"{name}.npy", mmap_mode="r", allow_pickle=False))
+            for name in ("offsets", "codes")
+        )
+    except (OSError, ValueError, EOFError):
+        return None
+    return (offsets, codes) if len(offsets) and offsets[-1] == len(codes) else None
 
 
 def _store(folder: Path, offsets: IntArray, codes: IntArray) -> None:
-    """Write the arrays so that another process sees all of them or none."""
+    """Write the arrays so that another process sees all of them or none; on a full disk there are none."""
     scratch = folder.with_name(f"{folder.name}.{os.getpid()}")
-    scratch.mkdir(parents=True, exist_ok=True)
-    np.save(scratch / "offsets.npy", offsets, allow_pickle=False)
-    np.save(scratch / "codes.npy", codes, allow_pickle=False)
-    try:
+    with suppress(OSError):
+        scratch.mkdir(parents=True, exist_ok=True)
+        np.save(scratch / "offsets.npy", offsets, allow_pickle=False)
+        np.save(scratch / "codes.npy", codes, allow_pickle=False)
+        if folder.is_dir() and _mapped(folder) is None:
+            shutil.rmtree(folder)  # damaged; whoever has mapped it keeps what they have
         scratch.rename(folder)
-    except OSError:  # another process was first; its files are the same
-        for file in scratch.iterdir():
-            file.unlink()
-        scratch.rmdir()
+    shutil.rmtree(scratch, ignore_errors=True)  # another process was first; its files are the same

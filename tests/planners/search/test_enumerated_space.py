@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from strategies import ARM
 from twins.kinematics import backbone_point
 
+from planners.search import configurations
 from planners.search.configurations import EnumeratedSpace, enumerated_space, hexagonal_lattice
 from scenarios import ContinuumArm, ScenarioError
 
@@ -112,6 +113,21 @@ def test_what_is_found_in_the_cache_is_what_was_put_there(tmp_path: Path, monkey
     # The body's radius does not matter to where the tip is.
     enumerated_space(ContinuumArm(radius_m=0.01), COARSE)
     assert len(list((tmp_path / "configurations").iterdir())) == 2
+
+
+@pytest.mark.parametrize(("name", "size"), [("codes", 1000), ("offsets", 200), ("codes", 0)])
+def test_what_was_cut_off_is_enumerated_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, size: int
+) -> None:
+    monkeypatch.setenv("SUITE_CACHE_DIR", str(tmp_path))
+    fresh = [np.array(part) for part in enumerated_space(ARM, COARSE)]
+    (file,) = (tmp_path / "configurations").rglob(f"{name}.npy")
+    file.write_bytes(file.read_bytes()[:size])
+    configurations._groups.cache_clear()
+    for a, b in zip(fresh, enumerated_space(ARM, COARSE), strict=True):
+        np.testing.assert_array_equal(a, b)
+    assert file.stat().st_size > size
+    assert len(list((tmp_path / "configurations").iterdir())) == 1
 
 
 def test_a_lattice_too_fine_is_refused_in_one_line() -> None:

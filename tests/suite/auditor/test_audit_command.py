@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from scenarios import ContinuumArm, Obstacle, Orbit, Scenario, save_scenarios
+from scenarios import ContinuumArm, Obstacle, Orbit, Scenario, UserError, save_scenarios
 from suite.auditor import audit as audit_one
 from suite.auditor import trajectory_file
 from suite.auditor.command import ENGINES, audit_file
@@ -168,11 +168,11 @@ def test_unknown_engine_lists_the_known_ones(judge):
 
 def test_files_that_cannot_be_read_are_refused(tmp_path, monkeypatch):
     file = tmp_path / "there.csv"
-    with pytest.raises(SuiteError, match="cannot be read: No such file"):
+    with pytest.raises(UserError, match="cannot be read: No such file"):
         trajectory_file.read_trajectories(file, [ONE])
     file.write_bytes(b"\xff\xfe")
-    with pytest.raises(SuiteError, match="allowed UTF-8"):
+    with pytest.raises(UserError, match="allowed UTF-8"):
         trajectory_file.read_trajectories(file, [ONE])
     monkeypatch.setattr(trajectory_file, "MAX_FILE_BYTES", 1)
-    with pytest.raises(SuiteError, match="found 2 bytes, allowed 1"):
+    with pytest.raises(UserError, match="found 2 bytes, allowed 1"):
         trajectory_file.read_trajectories(file, [ONE])

@@ -54,7 +54,7 @@ def test_hangs_and_crashes_are_rows_and_the_rest_goes_on() -> None:
     found = outcomes_of(rows)
     assert found["hang"] == ("planner_hung", "killed after 0.5 s")
     assert found["raise"] == ("planner_error", "ValueError: two lines" + place_of(r'ValueError("two\nlines")'))
-    assert found["die"] == ("planner_error", "the process died: SIGKILL")
+    assert found["die"] == ("worker_lost", "the process died: SIGKILL")
     assert found["quit"] == ("planner_error", "the process died: exit code 0")
     assert found["leave"] == ("planner_error", "SystemExit: 5" + place_of("SystemExit(5)"))
     assert found["fine"][0] in {"reached", "collided"}
@@ -88,7 +88,7 @@ def test_a_planner_that_fails_in_its_warm_up_costs_its_own_rows_alone(workers: i
         f"in warm-up: ValueError: three lines{THREE}",
     )
     assert found["hangs"] == ("planner_hung", "in warm-up: killed after 1 s")
-    assert found["dies"] == ("planner_error", "in warm-up: the process died: SIGKILL")
+    assert found["dies"] == ("worker_lost", "in warm-up: the process died: SIGKILL")
     assert found["quits"] == ("planner_error", "in warm-up: the process died: exit code 7")
     assert found["leaves"] == ("planner_error", "in warm-up: SystemExit: 3" + place_of("SystemExit(3)"))
     for row in rows.values():

@@ -86,7 +86,7 @@ def test_every_step_of_the_workflow_runs(tmp_path) -> None:
     places = {"PATH": f"{tmp_path / 'bin'}:{os.environ['PATH']}", "PYTHONPATH": str(ROOT)}
     given = {
         "PLANNER": workflow["env"]["PLANNER"],
-        "CONDITIONS": workflow["env"]["CONDITIONS"].replace("1,3,5,6", "0").replace("100", "2"),
+        "CONDITIONS": workflow["env"]["CONDITIONS"].replace("1,3,5,6", "0").replace("100", "2") + " --workers 1",
         "BASE_REF": "main",
         "RUNS": str(tmp_path / "runs"),
         "GITHUB_STEP_SUMMARY": str(tmp_path / "summary.md"),

@@ -3,6 +3,7 @@ import math
 import pandas as pd
 import pytest
 
+from scenarios import UserError
 from suite.compare.pairs import compare_in_pairs
 from suite.compare.published import beside, published_file, read_published
 from suite.compare.statistics import wilson_interval
@@ -133,7 +134,7 @@ def test_the_csv_does_not_depend_on_the_order_of_finishing() -> None:
 )
 def test_a_broken_trials_file_is_one_line(tmp_path, text: str, line: str) -> None:
     (tmp_path / "trials.csv").write_text(text)
-    with pytest.raises(SuiteError, match=line) as caught:
+    with pytest.raises(UserError, match=line) as caught:
         read_trials_csv(tmp_path / "trials.csv")
     assert "\n" not in str(caught.value)
 
@@ -156,12 +157,15 @@ def test_published_numbers_stand_beside_equal_planners_whatever_their_name() -> 
     [
         ("planner,n_obstacles\n", "found no column time_s"),
         ("planner,n_obstacles,time_s,success_percent,trials\nT2,many,1,2,3\n", "cannot be read"),
-        ("planner,n_obstacles,time_s,success_percent,trials\nT2,1,1,2,3\nT2,1,1,2,3\n", "two rows for one planner"),
+        (
+            "planner,n_obstacles,time_s,success_percent,trials\nT2,1,1,2,3\nT2,1,1,2,3\n",
+            "two rows for T2 and n_obstacles 1",
+        ),
     ],
 )
 def test_a_broken_published_file_is_one_line(tmp_path, text: str, line: str) -> None:
     (tmp_path / "theirs.csv").write_text(text)
-    with pytest.raises(SuiteError, match=line) as caught:
+    with pytest.raises(UserError, match=line) as caught:
         read_published(tmp_path / "theirs.csv")
     assert "\n" not in str(caught.value)
 

@@ -3,13 +3,13 @@ import json
 import pytest
 from fakes import fake_spec, make_scenario
 
-from scenarios import SpecError, save_scenarios
+from scenarios import SpecError, UserError, save_scenarios
 from suite.errors import SuiteError
 from suite.experiment.code import house, house_code
 from suite.experiment.experiment import make_experiment
 from suite.experiment.file import preset_fields
 from suite.experiment.manifest import make_manifest
-from suite.experiment.presets import PRESETS
+from suite.experiment.presets import PRESETS, standard_of
 from suite.trial.task import TrialTask
 
 
@@ -156,13 +156,23 @@ def test_a_manifest_reruns_its_experiment(tmp_path) -> None:
 def test_a_file_without_an_experiment_is_no_preset(tmp_path, text: str) -> None:
     file = tmp_path / "manifest.json"
     file.write_text(text)
-    with pytest.raises(ValueError, match=r"manifest\.json: (found no experiment|not valid JSON)"):
+    with pytest.raises(UserError, match=r"manifest\.json: (found no experiment|not valid JSON)"):
         preset_fields(str(file))
 
 
 def test_an_unknown_preset_lists_the_known_ones() -> None:
-    with pytest.raises(SpecError, match="preset: found 'table9', allowed table1; nearest: table1"):
+    with pytest.raises(SpecError, match="preset: found 'table9', allowed table1, standard-1; nearest: table1"):
         preset_fields("table9")
+
+
+def test_standard_1_is_known_by_its_scenarios() -> None:
+    scenarios = make_experiment(**PRESETS["standard-1"]).scenarios()
+    assert len(scenarios) == 900
+    mine = make_experiment(**PRESETS["standard-1"] | {"planners": ("pf",)})
+    assert standard_of(mine, scenarios.digest) == ("standard-1", True)
+    assert make_manifest(mine, scenarios)["standard"] == "standard-1"
+    assert standard_of(mine, "0" * 16) == ("standard-1", False)
+    assert standard_of(make_experiment(**PRESETS["standard-1"] | {"seed": 1}), scenarios.digest) is None
 
 
 def test_bounds_are_a_planner_more() -> None:

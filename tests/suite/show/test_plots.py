@@ -56,6 +56,13 @@ def test_what_is_drawn_is_what_was_counted(run: Path, tmp_path) -> None:
     assert drawn.figure.get_figwidth() == 3.4
 
 
+def test_places_on_the_axis_are_the_numbers_themselves(tmp_path) -> None:
+    """Whole numbers too, which pandas has types of its own for."""
+    run_with_fakes(tmp_path / "run", obstacles=(0, 1, 4), trials=1)
+    drawn = draw(tmp_path / "run", tmp_path / "a.svg", over="n_obstacles")
+    assert list(drawn.figure.axes[0].containers[0][0].get_xdata()) == [0, 1, 4]
+
+
 def test_looks_differ_and_names_are_for_people() -> None:
     assert len({look(position) for position in range(24)}) == 24
     assert len({look(position).color for position in range(8)}) == 8

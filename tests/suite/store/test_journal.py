@@ -145,12 +145,12 @@ def test_values_that_fit_no_trial_are_one_line(tmp_path, statement: str, line: s
 
 
 def test_a_killed_run_goes_on_and_ends_like_an_unbroken_one(tmp_path) -> None:
-    killed_run(tmp_path / "broken", die_after=5, in_processes=True)
+    killed_run(tmp_path / "broken", die_after=5, where=2)
     assert not (tmp_path / "broken" / "trials.csv").exists()
     before = rows_of(tmp_path / "broken")
     assert len(before) == 5
 
-    assert len(run_with_fakes(tmp_path / "broken", in_processes=True)) == 11
+    assert len(run_with_fakes(tmp_path / "broken", where=2)) == 11
     run_with_fakes(tmp_path / "unbroken")
     assert contents(tmp_path / "broken") == contents(tmp_path / "unbroken")
     after = rows_of(tmp_path / "broken")

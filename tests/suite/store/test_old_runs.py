@@ -10,6 +10,7 @@ import pandas as pd
 import pytest
 from fake_runs import SOURCES, contents, run_with_fakes, snapshot
 
+from scenarios import UserError
 from suite.cli.main import main
 from suite.compare.tables import summarize
 from suite.errors import SuiteError
@@ -173,7 +174,7 @@ def test_what_is_no_journal_or_a_newer_one_is_one_line_and_left_alone(tmp_path, 
     err = capfd.readouterr().err
     assert err.count("\n") == 1
     assert line in err
-    with pytest.raises(SuiteError, match=line):
+    with pytest.raises(UserError, match=line):
         run_with_fakes(tmp_path)
     assert snapshot(tmp_path) == before
 

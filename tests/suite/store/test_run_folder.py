@@ -8,6 +8,7 @@ from unittest.mock import patch
 import pytest
 from fake_runs import contents, killed_run, run_with_fakes, snapshot
 
+from scenarios import UserError
 from suite.cli.main import main
 from suite.errors import SuiteError
 from suite.store.run_folder import open_run, read_trials
@@ -113,7 +114,7 @@ def test_one_process_at_a_time(tmp_path) -> None:
 
 def test_a_broken_manifest_is_one_line(tmp_path) -> None:
     (tmp_path / "manifest.json").write_text('{"experiment": ')
-    with pytest.raises(SuiteError, match=r"manifest\.json: cannot be read: "), open_run(tmp_path, MANIFEST, []):
+    with pytest.raises(UserError, match=r"manifest\.json: not valid JSON"), open_run(tmp_path, MANIFEST, []):
         pass
     with open_run(tmp_path, MANIFEST, [], fresh=True):
         pass

@@ -1,0 +1,1 @@
+"""Broken files for everything that the suite reads: ``make fuzz``."""
