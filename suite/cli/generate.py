@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from suite.cli.options import Arm, Family, Obstacles, Seed, Trials, cores, numbers, say
+from suite.cli.cores import cores
+from suite.cli.options import Arm, Family, Obstacles, Seed, Trials, numbers, say
 
 if TYPE_CHECKING:
     from scenarios import ContinuumArm
