@@ -261,4 +261,32 @@ MUTANTS = (
         'times.searchsorted(found.swept_s, "right")',
         (f"{CONTACT}a_contact_at_a_timed_state_belongs_to_the_way_there",),
     ),
+    Mutant(
+        "the gate calls a loss within the margin a regression",
+        "suite/compare/gate.py",
+        "if finding.p_worse <= alpha and not finding.is_within_margin:",
+        "if finding.p_worse <= alpha:",
+        ("tests/suite/compare/test_gate.py::test_success_is_judged_in_pairs",),
+    ),
+    Mutant(
+        "the gate's interval takes one run for the other",
+        "suite/compare/statistics.py",
+        "c = -only_base * difference * (1.0 - difference)",
+        "c = -only_new * difference * (1.0 - difference)",
+        ("tests/suite/compare/test_paired_statistics.py::test_tangos_interval_is_what_the_score_test_does_not_reject",),
+    ),
+    Mutant(
+        "sensors see obstacles in the gaps of a recording",
+        "suite/trial/observation.py",
+        "lost[:, j] |= obstacle.unseen(self._times_s)",
+        "lost[:, j] |= False",
+        ("tests/suite/exchange/test_import_tracks.py::test_sensors_report_nothing_in_a_gap",),
+    ),
+    Mutant(
+        "a merge takes rows that differ by the same code for equal",
+        "suite/store/union.py",
+        "elif before[1] != outcome:",
+        "elif False:",
+        ("tests/suite/test_merger.py::test_a_conflict_is_named_and_nothing_written",),
+    ),
 )

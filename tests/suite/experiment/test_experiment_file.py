@@ -126,3 +126,11 @@ def test_the_published_schemas_are_those_of_the_code(name: str) -> None:
     spec.loader.exec_module(schema)
     published = (ROOT / "docs" / f"{name}.schema.json").read_text(encoding="utf-8")
     assert published == schema.schema_text(name), "python docs/schema.py writes it anew"
+
+
+@pytest.mark.parametrize("file", sorted((ROOT / "docs" / "studies").glob("*.yaml")), ids=lambda file: file.stem)
+def test_the_studies_are_sound_and_the_runs_kept_are_theirs(file: Path) -> None:
+    study = check_experiment_file(file)
+    kept = ROOT / "results" / file.stem / "manifest.json"
+    if kept.exists():
+        assert make_experiment(**read_experiment_file(kept)) == study
