@@ -41,9 +41,12 @@ export function bar(trial, clock) {
   return picture;
 }
 
+// A label at either end stays within the axis.
+const place = (share) => `left:${100 * share}%;transform:translateX(${-100 * share}%)`;
+
 /** The times below the bars: some whole numbers of seconds. */
 export function axis(clock) {
   const step = [0.5, 1, 2, 5, 10, 20, 30, 60, 120, 300, 600].find((each) => clock.end / each <= 8) ?? 1200;
   const marks = Array.from({ length: Math.floor(clock.end / step + 1e-9) + 1 }, (_, k) => k * step);
-  return h("div", { class: "axis" }, ...marks.map((time) => h("span", { style: `left:${(100 * time) / Math.max(clock.end, 1e-9)}%` }, `${time} s`)));
+  return h("div", { class: "axis" }, ...marks.map((time) => h("span", { style: place(time / Math.max(clock.end, 1e-9)) }, `${time} s`)));
 }

@@ -1,4 +1,4 @@
-// Arrays as suite/show/replay/packed.py writes them: second differences of 16 bits, deflated, base64.
+// Arrays as suite/show/replay/packed.py writes them: second differences, deflated, base64.
 
 async function inflate(text) {
   const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
@@ -7,15 +7,16 @@ async function inflate(text) {
 }
 
 /** Rows of numbers: {rows, width, values: Float64Array}, row after row. */
-export async function unpack({ shape, low, step, data }) {
-  const raw = new Uint16Array(await inflate(data));
+export async function unpack({ shape, low, step, bits, data }) {
+  const Levels = bits === 32 ? Uint32Array : Uint16Array;
+  const raw = new Levels(await inflate(data));
   const width = shape.slice(1).reduce((a, b) => a * b, 1);
   const values = new Float64Array(raw.length);
-  const level = new Uint16Array(width);
-  const slope = new Uint16Array(width);
+  const level = new Levels(width);
+  const slope = new Levels(width);
   for (let k = 0; k < raw.length; k++) {
     const i = k % width;
-    slope[i] += raw[k]; // wraps around at 2^16, as it was written
+    slope[i] += raw[k]; // wraps around, as it was written
     level[i] += slope[i];
     values[k] = low + step * level[i];
   }

@@ -29,6 +29,7 @@ from suite.cli.options import EXIT_INTERRUPTED, EXIT_USAGE, say
 from suite.cli.planners import planners
 from suite.cli.plot import plot
 from suite.cli.predictors import predictors
+from suite.cli.report import report
 from suite.cli.run import run
 from suite.cli.show import show
 from suite.cli.table import table
@@ -50,7 +51,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 for verb in (
-    run, table, show, compare, plot, merge, export, generate,
+    run, table, show, report, compare, plot, merge, export, generate,
     planners, new_planner, check_planner, predictors, check, audit, version,
 ):  # fmt: skip
     app.command()(verb)

@@ -239,14 +239,18 @@ class Journal:
             scenario_id, planner, blob, *values = self._db.execute(row, number).fetchone()
             yield self._executed(scenario_id, planner, blob, dict(zip(names, values, strict=True)))
 
-    def trials_of(self, scenario_id: str) -> Iterator[tuple[Row, Executed]]:
-        """Rows of one scenario that are asked for, with what was executed, sorted as in the tables.
+    def kept(self, scenario_id: str | None = None) -> Iterator[tuple[Row, Executed]]:
+        """Rows that are asked for, of one scenario or of all, with what was executed, sorted as in the tables.
 
         Raises:
             SuiteError: A value is not of its column's type, or what is stored is no trajectory.
         """
-        wanted = f"SELECT {_NAMES}, executed FROM shown WHERE scenario_id = ? ORDER BY {_SORTED}"
-        for *values, blob in self._db.execute(wanted, [scenario_id]):
+        where, given = ("", []) if scenario_id is None else ("WHERE scenario_id = ?", [scenario_id])
+        numbers = self._db.execute(f"SELECT number FROM shown {where} ORDER BY {_SORTED}", given).fetchall()
+        for number in numbers:
+            *values, blob = self._db.execute(
+                f"SELECT {_NAMES}, executed FROM trials WHERE number = ?", number
+            ).fetchone()
             row = self._complete(values)
             conditions = {column.name: row[column.name] for column in CONDITIONS}
             yield row, self._executed(row["scenario_id"], row["planner"], blob, conditions)

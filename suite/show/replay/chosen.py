@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import difflib
 import sqlite3
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 import pandas as pd
 from pydantic import ValidationError
 
-from scenarios import Scenario
+from scenarios import Scenario, load_scenarios
 from scenarios.spec import known_name
 from suite.compare.conditions import telling_apart
 from suite.errors import SuiteError
@@ -112,6 +112,14 @@ def scenario_of(folder: Path, scenario_id: str, content_hash: str) -> Scenario:
     return found
 
 
+def run_scenarios(folder: Path) -> Iterable[Scenario]:
+    """All scenarios that the run kept, or drawn again; none where neither can be done."""
+    if (folder / "scenarios.jsonl").is_file():
+        return load_scenarios(folder / "scenarios.jsonl")
+    experiment = experiment_of(folder)
+    return () if experiment is None else experiment.scenarios()
+
+
 def experiment_of(folder: Path, planners: Sequence[str] | None = None) -> Experiment | None:
     """What was asked for in the run, with some of its planners alone; None where its manifest can't say."""
     fields = (read_manifest(folder) or {}).get("experiment")
@@ -145,7 +153,7 @@ def _kept(folder: Path, rows: pd.DataFrame, scenario_id: str) -> Sequence[tuple[
         return [(complete_row(row), None) for row in named]
     try:
         with Journal(folder / JOURNAL, read_only=True) as journal:
-            return list(journal.trials_of(scenario_id))
+            return list(journal.kept(scenario_id))
     except (OSError, sqlite3.Error) as error:
         raise SuiteError(f"{folder / JOURNAL}: cannot be read: {error}"[:300]) from None
 

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from scenarios import Mesh, Obstacle, Scenario
 from scenarios.world import positions
 from suite.show.replay.again import Played
-from suite.show.replay.packed import packed
+from suite.show.replay.packed import packed, packed_times
 from suite.show.replay.story import holds, story
 from suite.trial.look import Look
 from suite.trial.observation import Observer
@@ -49,7 +49,7 @@ def trial_data(scenario: Scenario, played: Played) -> dict[str, Any]:
     return {
         "planner": played.label,
         "outcome": row["outcome"],
-        "times": packed(executed.times_s),
+        "times": packed_times(executed.times_s),
         "states": packed(executed.configurations_rad),
         "verdicts": {
             name: {
@@ -99,7 +99,7 @@ def _looks(looks: list[Look]) -> dict[str, Any] | None:
         "solves": [now_s for now_s, _ in plans],
         "statuses": [plan.status for _, plan in plans],
         "lengths": [len(path) for path in paths],
-        "path_times": packed(np.concatenate([plan.times_s for _, plan in plans])),
+        "path_times": packed_times(np.concatenate([plan.times_s for _, plan in plans])),
         "paths": packed(np.concatenate(paths)),
     }
 

@@ -49,7 +49,7 @@ def test_a_replay_holds_what_was_executed_and_what_was_true(run, tmp_path, capfd
     assert str(file) in capfd.readouterr().out
     data, executed = data_of(file), suite.load(run).trajectory(scenario_id, "pf")
     (trial,) = data["trials"]
-    assert np.allclose(unpacked(trial["times"]), executed.times_s, atol=2e-3)
+    assert np.allclose(unpacked(trial["times"]), executed.times_s, atol=1e-6)
     assert np.allclose(unpacked(trial["states"]), executed.configurations_rad, atol=1e-4)
     trace, scenario = data["scenario"]["trace"], suite.load(run).scenario(scenario_id)
     centers = unpacked(trace["centers"])

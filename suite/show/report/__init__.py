@@ -1,0 +1,1 @@
+"""A whole run in one page: table, curves, times, failures, pairs, and every trial's replay."""
