@@ -6,6 +6,7 @@ device or a file that grows; its text may hold anything.
 
 import json
 import os
+import re
 import stat
 from collections.abc import Hashable, Iterable
 from pathlib import Path
@@ -15,6 +16,7 @@ import yaml
 
 from scenarios.errors import FileError, shortened
 
+_HALF = re.compile(r"\\u[dD][89a-fA-F]")
 MAX_DEPTH = 50
 """Values may be nested so deep."""
 
@@ -116,6 +118,8 @@ class _KeyTwiceError(Exception):
 def _parse_json(text: str) -> Any:
     value = json.loads(text, object_pairs_hook=_dict_of)
     _refuse_depth(value)
+    if _HALF.search(text):
+        json.dumps(value, ensure_ascii=False).encode()  # half a character alone can be neither shown nor stored
     return value
 
 

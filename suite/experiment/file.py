@@ -133,7 +133,7 @@ def nearest(name: str, known: Iterable[str]) -> str:
 
 def _line(error: ValidationError) -> str:
     finding = error.errors(include_url=False)[0]
-    field = str(finding["loc"][0])
+    field = str(finding["loc"][0]) if finding["loc"] else "experiment"
     if finding["type"] == "extra_forbidden":
         known = list(ExperimentFile.model_fields)
         return f"found {field[:60]!r}, allowed {', '.join(known)}{nearest(field, known)}"

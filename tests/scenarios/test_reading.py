@@ -40,6 +40,7 @@ def test_a_file_has_a_largest_size(tmp_path: Path, size: int, is_read: bool) -> 
         (b"a\0b", "found a NUL"),
         (b'{"a": 1, "a": 2}', "the key 'a' twice"),
         (b"{", "not valid JSON"),
+        (b'{"a\\ud800": 1}', "surrogates not allowed"),
     ],
 )
 def test_broken_text_is_one_line(tmp_path: Path, data: bytes, line: str) -> None:
