@@ -8,6 +8,7 @@ import { before } from "./unpack.js";
 
 const PER_SECTION = 24;
 const TRAIL_S = 8;
+const GLOW_S = 1; // what touches glows so long, if it does not touch for longer
 
 export class View {
   constructor(scenario, trial) {
@@ -60,7 +61,8 @@ export class View {
     const expected = this.showExpected(time);
     const near = scenario.allRound && nearest(frames, scenario.arm, PER_SECTION, centers, scenario.shapes.map((s) => s.radius));
     const [obstacle, section] = trial?.contact ?? [0, 0];
-    const touched = trial?.verdicts.swept.kind === "collision" && time >= trial.verdicts.swept.time - 1e-3;
+    const first = trial?.verdicts.swept.kind === "collision" ? trial.verdicts.swept.time : Infinity;
+    const touched = time >= first - 1e-3 && (time < first + GLOW_S || (near && near.metres <= 0));
     this.tube.mark(touched ? section : 0);
     this.obstacles.forEach(({ body }, j) => body.material.emissive.set(touched && j + 1 === obstacle ? "#8a0f00" : "#000000"));
     if (trial) {

@@ -153,7 +153,7 @@ def _kept(folder: Path, rows: pd.DataFrame, scenario_id: str) -> Sequence[tuple[
         return [(complete_row(row), None) for row in named]
     try:
         with Journal(folder / JOURNAL, read_only=True) as journal:
-            return list(journal.kept(scenario_id))
+            return list(journal.kept({scenario_id}))
     except (OSError, sqlite3.Error) as error:
         raise SuiteError(f"{folder / JOURNAL}: cannot be read: {error}"[:300]) from None
 

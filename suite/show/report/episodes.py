@@ -46,10 +46,9 @@ def episodes(folder: Path, trials: pd.DataFrame, budget: int) -> dict[str, dict[
     scenarios = {each.id: each for each in run_scenarios(folder) if each.id in wanted}
     made: dict[str, dict[str, Any]] = {}
     with Journal(folder / JOURNAL, read_only=True) as journal:
-        kept = journal.kept()
+        kept = journal.kept(scenarios)
         for scenario_id, group in groupby(kept, key=lambda pair: str(pair[0]["scenario_id"])):
-            if scenario_id in scenarios:
-                made[scenario_id] = _episode(scenarios[scenario_id], list(group), apart)
+            made[scenario_id] = _episode(scenarios[scenario_id], list(group), apart)
     sizes = pd.Series({name: len(json.dumps(made[name], separators=(",", ":"))) for name in order if name in made})
     return {name: made[name] for name in sizes.index[sizes.cumsum() <= budget]}
 
