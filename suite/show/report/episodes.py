@@ -18,7 +18,7 @@ from suite.store.journal import Executed, Journal
 from suite.store.run_folder import JOURNAL
 from suite.trial.columns import Row
 
-_TRIAL_BYTES, _SCENARIO_BYTES = 700, 900
+_TRIAL_BYTES, _SCENARIO_BYTES = 400, 500
 """Less than what a trial, and a scenario, usually take; what turns out too much is left out again."""
 
 
