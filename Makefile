@@ -9,8 +9,9 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 RUNNABLE := $(VENV)/.runnable
 TESTABLE := $(VENV)/.testable
+WRITABLE := $(VENV)/.writable
 
-.PHONY: run test mutants faults fuzz bench lint lock bundle clean
+.PHONY: run test mutants faults fuzz bench lint docs lock bundle clean
 
 run: $(RUNNABLE)
 	$(BIN)/suite run --planners temporal,rrt,pf
@@ -36,6 +37,11 @@ lint: $(TESTABLE)
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
+# The site, in build/site; a warning is an error.
+docs: $(WRITABLE)
+	$(BIN)/python docs/site.py
+	$(BIN)/zensical build --clean --strict
+
 # Made again only when what is to be installed has changed.
 PIP_INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
@@ -52,14 +58,20 @@ $(TESTABLE): requirements-dev.lock $(RUNNABLE)
 	$(PIP_INSTALL) --requirement requirements-dev.lock
 	@touch $@
 
+# What makes the site.
+$(WRITABLE): requirements-docs.lock $(RUNNABLE)
+	$(PIP_INSTALL) --requirement requirements-docs.lock
+	@touch $@
+
 # Pins from pyproject.toml for every Python >= 3.11; needs uv. All files have the same versions: with every extra, with
-# what tests and linters need, and with what a run needs.
+# what tests and linters need, with what the site needs, and with what a run needs.
 UV_COMPILE := uv pip compile pyproject.toml --quiet --universal --python-version 3.11 --generate-hashes \
     --no-annotate --custom-compile-command "make lock" --upgrade
 
 lock:
 	$(UV_COMPILE) --all-extras --output-file requirements-all.lock
 	$(UV_COMPILE) --extra test --extra dev --extra cluster --constraint requirements-all.lock --output-file requirements-dev.lock
+	$(UV_COMPILE) --extra docs --constraint requirements-all.lock --output-file requirements-docs.lock
 	$(UV_COMPILE) --constraint requirements-all.lock --output-file requirements.lock
 
 # The script of replays and reports from web/, with three.js in it; needs node. What it makes is committed.

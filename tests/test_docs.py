@@ -122,3 +122,19 @@ def test_simple_setup_drives_a_planner_as_the_page_of_the_arbiter_shows(folder: 
     (block,) = blocks_of(page)
     said = [line for line in run(folder, "python", "-c", block.code).splitlines() if not line.startswith("Info:")]
     assert [line.split()[0] for line in said] == ["0", "1", "2", "3"]
+
+
+def test_the_page_on_looking_shows_what_it_says(folder: Path, monkeypatch) -> None:
+    monkeypatch.setenv("BROWSER", "true")  # a command that opens nothing
+    page = (ROOT / "docs" / "looking.md").read_text(encoding="utf-8")
+    (folder / "work" / "scenarios").symlink_to(ROOT / "scenarios")
+    blocks = blocks_of(page)
+    assert {block.language for block in blocks} == {"sh"}
+    said = [run(folder, "bash", "-ec", block.code) for block in blocks]
+    quoted = re.findall(r"(?:^> .*\n)+", page, re.MULTILINE)[0].replace("\n>", "").removeprefix("> ").strip()
+    assert quoted in said[0]
+    for name in ("trial.html", "report.html", "curve.pdf", "times.pdf", "profile.pdf", "verdicts.pdf", "paths.pdf"):
+        assert (folder / "work" / name).stat().st_size > 5000, name
+    assert (folder / "work" / "table.tex").read_text().startswith("% \\usepackage{booktabs}")
+    for picture in re.findall(r"\]\((pictures/.*?)\)", page):
+        assert (ROOT / "docs" / picture).stat().st_size < 300_000

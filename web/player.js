@@ -100,6 +100,8 @@ function panel(trial) {
     const parts = [];
     if (trial && time > trial.end + 1e-6) parts.push(`ended at ${trial.end.toFixed(1)} s`);
     else if (trial) parts.push(trial.holds.some(([from, to]) => time >= from && time < to) ? "holding" : "moving");
+    const { time: first, kind } = trial?.verdicts.swept ?? {};
+    if (kind === "collision" && time > first && !touched) parts.push(`touched at ${first.toFixed(2)} s`);
     if (near && near.obstacle >= 0) {
       const millimetres = 1000 * near.metres;
       parts.push(touched || millimetres <= 0 ? `obstacle ${near.obstacle + 1} at section ${near.section}: contact` : `nearest: obstacle ${near.obstacle + 1} to section ${near.section}, ${millimetres.toFixed(1)} mm`);

@@ -44,7 +44,7 @@ function mainTable(data, verdict) {
     { title: "planner", left: true, sort: (row) => row.label, cell: (row) => (row.bound ? `${row.label} (bound)` : row.label) },
     number("n", "n", "trials"),
     { title: `${VERDICTS[verdict]} %`, hint: "successes in percent of all trials, with the 95 % Wilson interval", sort: (row) => row.success[verdict][0], cell: (row) => success(row.success[verdict]) },
-    { title: "possible / open / impossible", hint: "of the planner's scenarios: solved by somebody, neither, proven impossible; for the executable verdict", sort: (row) => row.scenarios[0], cell: (row) => (row.scenarios[0] === null ? "-" : row.scenarios.join(" / ")) },
+    ...(entries.some((row) => row.bound) ? [{ title: "possible / open / impossible", hint: "of the planner's scenarios: solved by somebody, neither, proven impossible; for the executable verdict", sort: (row) => row.scenarios[0], cell: (row) => (row.scenarios[0] === null ? "-" : row.scenarios.join(" / ")) }] : []), // without a bound nobody has asked
     number("planning, mean", "planning_mean", "sum over a trial's solves", seconds),
     number("median", "planning_median", "sum over a trial's solves", seconds),
     number("solve", "solve", "median of the trials' median solves", seconds),

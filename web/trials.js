@@ -21,7 +21,8 @@ export function trialList(data, open) {
     table.set(kept);
   };
   refresh();
-  const element = h("div", {}, h("div", { class: "filters" }, ...Object.values(filters), h("label", {}, disagreed, " planners disagree (swept)")), count, table.element);
+  const without = Object.keys(data.episodes).length ? null : h("p", { class: "soft" }, `No motions stand in this page: suite show ${data.run} --scenario ID plays trials again.`);
+  const element = h("div", {}, without, h("div", { class: "filters" }, ...Object.values(filters), h("label", {}, disagreed, " planners disagree (swept)")), count, table.element);
   return {
     element,
     judge(name) {

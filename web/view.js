@@ -8,6 +8,7 @@ import { before } from "./unpack.js";
 
 const PER_SECTION = 24;
 const TRAIL_S = 8;
+const GLOW_S = 1; // what touches glows so long, if it does not touch for longer
 
 export class View {
   constructor(scenario, trial) {
@@ -37,7 +38,7 @@ export class View {
     this.scene.add(body, name);
     const made = { body, name, trail: this.add(new Trace(OBSTACLE, { opacity: 0.7 })) };
     if (this.trial?.looks) {
-      const look = new THREE.MeshBasicMaterial({ color: EXPECTED, wireframe: true, transparent: true, opacity: 0.4 });
+      const look = new THREE.MeshBasicMaterial({ color: EXPECTED, wireframe: true, transparent: true, opacity: 0.55 });
       const coarse = shape.kind === "sphere" ? new THREE.IcosahedronGeometry(1, 2) : shapeGeometry(shape);
       made.ghost = new THREE.Mesh(coarse, look);
       made.ahead = this.add(new Trace(EXPECTED, { dashed: true }));
@@ -60,7 +61,8 @@ export class View {
     const expected = this.showExpected(time);
     const near = scenario.allRound && nearest(frames, scenario.arm, PER_SECTION, centers, scenario.shapes.map((s) => s.radius));
     const [obstacle, section] = trial?.contact ?? [0, 0];
-    const touched = trial?.verdicts.swept.kind === "collision" && time >= trial.verdicts.swept.time - 1e-3;
+    const first = trial?.verdicts.swept.kind === "collision" ? trial.verdicts.swept.time : Infinity;
+    const touched = time >= first - 1e-3 && (time < first + GLOW_S || (near && near.metres <= 0));
     this.tube.mark(touched ? section : 0);
     this.obstacles.forEach(({ body }, j) => body.material.emissive.set(touched && j + 1 === obstacle ? "#8a0f00" : "#000000"));
     if (trial) {
@@ -77,7 +79,7 @@ export class View {
     const expected = trial.looks.expected(Math.min(time, trial.end));
     this.obstacles.forEach(({ ghost, ahead }, j) => {
       ghost.position.set(...expected.centers[j]);
-      if (this.scenario.shapes[j].kind === "sphere") ghost.scale.setScalar(Math.max(expected.radii[j], 1e-4));
+      if (this.scenario.shapes[j].kind === "sphere") ghost.scale.setScalar(1.03 * Math.max(expected.radii[j], 1e-4)); // a hair outside, so that both are seen
       ahead.through(expected.ahead.map((centers) => centers[j]));
     });
     return expected;
@@ -87,6 +89,7 @@ export class View {
 function ground({ length_m, radius_m, n_sections, section_length_m }) {
   const length = length_m ?? n_sections * section_length_m;
   const grid = new THREE.GridHelper(2 * length, 18, "#d9d4c7", "#ebe8df").rotateX(Math.PI / 2);
+  Object.assign(grid.material, { transparent: true, opacity: 0.6 }); // an arm may hang below it
   const base = new THREE.Mesh(new THREE.CylinderGeometry(1.9 * radius_m, 2.2 * radius_m, 0.012, 40).rotateX(Math.PI / 2), material("#6d6a63"));
   base.position.z = -0.006;
   return [grid, base];

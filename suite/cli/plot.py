@@ -12,7 +12,13 @@ from suite.cli.options import EXIT_NOTHING, By, Run, names, say, usage
 
 def plot(
     run: Run,
-    kind: Annotated[str, typer.Argument(help="curve: success over a condition, a line per planner.")] = "curve",
+    kind: Annotated[
+        str,
+        typer.Argument(
+            help="curve: success over a condition; times: planning times; profile: success within a factor of the"
+            " least cost; verdicts: all three, per planner; paths: of the tip, in one scenario."
+        ),
+    ] = "curve",
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="File: .png, .pdf or .svg. [default: RUN/KIND.png]")
     ] = None,
@@ -25,7 +31,10 @@ def plot(
     ] = "swept",
     spent: Annotated[
         Literal["checks", "time"] | None,
-        typer.Option(help="Put each point at what its median trial spent, in place of the condition's value."),
+        typer.Option(help="curve: put points at what their median trial spent; profile: the cost. [profile: time]"),
+    ] = None,
+    scenario: Annotated[
+        str | None, typer.Option(help="paths: id of the scenario. [default: the first that somebody failed on]")
     ] = None,
 ) -> None:
     """Draw a figure of a run, finished or not; needs matplotlib."""
@@ -40,7 +49,7 @@ def plot(
         say(f"{run}: no trial has finished yet")
         raise typer.Exit(EXIT_NOTHING)
     file = output or run / f"{kind}.png"
-    asked = Asked(over, None if by is None else names(by), verdict, spent)
+    asked = Asked(over, None if by is None else names(by), verdict, spent, run, scenario)
     drawn = draw(kind, trials, planner_order(run), asked, file)
     print(file)
     for remark in drawn.remarks:

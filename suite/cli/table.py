@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Literal
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 
 import typer
 
@@ -20,6 +21,9 @@ def table(
     run: Run,
     format: Annotated[Format, typer.Option(help="What to print.")] = "terminal",
     by: By = None,
+    columns: Annotated[
+        str | None, typer.Option(help="Columns to print, such as 'planner,n,swept'. [default: all that say something]")
+    ] = None,
     against: Annotated[
         str | None, typer.Option(help="Put published numbers beside: 'published' (the paper's Table I) or a CSV file.")
     ] = None,
@@ -51,25 +55,42 @@ def table(
         pairs = None if reference is None else compare_in_pairs(pooled.trials, reference, verdict)
     if against is not None:
         summary = beside(summary, read_published(published_file(against)))
-    _print(summary, pairs, pooled, format)
+    chosen = None if columns is None else names(columns)
+    if chosen is not None and format in {"csv", "json"}:
+        raise usage(f"--columns: found beside --format {format}, allowed with terminal, markdown, latex")
+    _print(run, Printed(summary, pairs, pooled, chosen), format)
 
 
-def _print(summary: pd.DataFrame, pairs: pd.DataFrame | None, pooled: Pooled | None, format: Format) -> None:
+class Printed(NamedTuple):
+    """What there is to print."""
+
+    summary: pd.DataFrame
+    pairs: pd.DataFrame | None
+    pooled: Pooled | None
+    columns: tuple[str, ...] | None
+    """Those that were asked for."""
+
+
+def _print(run: Path, printed: Printed, format: Format) -> None:
     from suite.show import text
     from suite.show.conditions import sentence
+    from suite.show.latex import as_latex
     from suite.show.terminal import print_pairs, print_summary
 
+    summary, pairs, pooled, columns = printed
     if format == "json":
         print(text.as_json(summary, pairs, pooled))
         return
     if pooled is not None and pooled.over and format != "csv":
         print(f"% {pooled}" if format == "latex" else f"{pooled}\n")
     if format == "terminal":
-        print_summary(summary)
+        print_summary(summary, columns)
+    elif format == "latex":
+        print(as_latex(run.resolve().name, summary, columns), end="")
     else:
         if format == "markdown" and (said := sentence(summary)):
             print(f"{said}\n")
-        print(text.render(summary, format), end="")
+        print(text.render(summary, format, columns), end="")
     if pairs is not None:
         print()
         if format == "terminal":

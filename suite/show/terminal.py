@@ -22,11 +22,11 @@ NARROW = 80
 """Columns of a terminal that says it has none, as ``COLUMNS=0`` does."""
 
 
-def print_summary(summary: pd.DataFrame) -> None:
-    """Print conditions and summary to stdout, with a gap between numbers of obstacles."""
+def print_summary(summary: pd.DataFrame, names: Sequence[str] | None = None) -> None:
+    """Print conditions and summary to stdout, with a gap between numbers of obstacles; some columns where named."""
     if said := sentence(summary):
         console().print(f"{said}\n", markup=False, highlight=False)
-    titles, rows = cells(summary)
+    titles, rows = cells(summary, names)
     _print_table(titles, rows, summary.groupby(WORLDS, sort=False, dropna=False).ngroup().tolist())
 
 

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Sequence
 from typing import Any, Literal, NamedTuple
 
 import pandas as pd
 from tabulate import tabulate
 
+from scenarios.spec import known_name
 from suite.auditor.verdicts import VERDICTS
 from suite.compare.conditions import Pooled
 from suite.show.conditions import column, sentence, varying
 from suite.store.frames import FLOAT_FORMAT
 from suite.trial.columns import WORLD
 
+_UNIT = re.compile(r" (%|s|ms|m|rad)$")
 WORLD_NAMES = {condition.name for condition in WORLD}
 
 Format = Literal["markdown", "csv", "latex"]
@@ -74,18 +77,28 @@ def shown_columns(summary: pd.DataFrame) -> list[Shown]:
     return [column for column in columns if column is not None]
 
 
-def cells(summary: pd.DataFrame) -> tuple[list[str], list[list[str]]]:
-    """Titles and rows of text."""
+def cells(summary: pd.DataFrame, names: Sequence[str] | None = None) -> tuple[list[str], list[list[str]]]:
+    """Titles and rows of text; of the columns called ``names`` alone, in their order, where some are named.
+
+    Raises:
+        SpecError: There is no column of that name; a unit need not be named.
+    """
     columns = shown_columns(summary)
+    if names is not None:
+        known = {
+            column.title.rpartition(" ")[0] if _UNIT.search(column.title) else column.title: column
+            for column in columns
+        }
+        columns = [known[known_name("--columns", _UNIT.sub("", name), known)] for name in names]
     rows = [[column.cell(row) for column in columns] for row in summary.itertuples(index=False)]
     return [column.title for column in columns], rows
 
 
-def render(summary: pd.DataFrame, format: Format) -> str:
-    """The summary in one of the formats for files."""
+def render(summary: pd.DataFrame, format: Literal["markdown", "csv"], names: Sequence[str] | None = None) -> str:
+    """The summary for a file; of the columns called ``names`` alone, but for CSV. LaTeX: ``suite.show.latex``."""
     if format == "csv":
         return as_csv(summary)
-    titles, rows = cells(summary)
+    titles, rows = cells(summary, names)
     return _tabulated(titles, rows, format)
 
 

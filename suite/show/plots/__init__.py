@@ -11,11 +11,17 @@ import pandas as pd
 
 from scenarios.spec import known_name
 from suite.errors import SuiteError
-from suite.show.plots import curve
+from suite.show.plots import curve, paths, profile, times, verdicts
 from suite.show.plots.asked import Asked, Drawn
 from suite.show.plots.style import drawing, save
 
-KINDS = {"curve": curve.draw}
+KINDS = {
+    "curve": curve.draw,
+    "times": times.draw,
+    "profile": profile.draw,
+    "verdicts": verdicts.draw,
+    "paths": paths.draw,
+}
 SUFFIXES = (".png", ".pdf", ".svg")
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 if TYPE_CHECKING:
@@ -19,7 +20,12 @@ class Asked(NamedTuple):
     """Conditions that are told apart, all others being pooled; all that vary when None."""
     verdict: str = "swept"
     spent: Spent | None = None
-    """Put points where their median trial's checks or planning time is, in place of the condition's value."""
+    """Put points where their median trial's checks or planning time is, in place of the condition's value; what a
+    profile compares."""
+    run: Path | None = None
+    """Folder of the run, for kinds that look at more than its rows."""
+    scenario: str | None = None
+    """Which scenario, for kinds that show one; the first that somebody failed on when None."""
 
 
 class Drawn(NamedTuple):

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from scenarios import load_scenarios
 from suite.errors import SuiteError
+from suite.progress import note
 from suite.show.page import page
 from suite.show.replay.again import play
 from suite.show.replay.chosen import choose
@@ -19,6 +20,8 @@ from suite.show.replay.data import scenario_data, trial_data
 
 BEFORE_S = 2.0
 """A page opens so long before the first violation."""
+NOTABLE_S = 5.0
+"""A wait that needs a word."""
 
 
 class Made(NamedTuple):
@@ -37,6 +40,9 @@ def replay_page(folder: Path, scenario_id: str | None, planners: Sequence[str]) 
     """
     chosen = choose(folder, scenario_id, planners)
     scenario = chosen.scenario
+    took_s = sum(trial.row["trial_wall_s"] or 0.0 for trial in chosen.trials)
+    if took_s > NOTABLE_S:
+        note(f"playing {len(chosen.trials)} trials again; in the run they took {took_s:.0f} s")
     played = [play(folder, scenario, trial, planners) for trial in chosen.trials]
     end_s = max(float(each.executed.times_s[-1]) for each in played)
     trials = [trial_data(scenario, each) for each in played]

@@ -43,7 +43,7 @@ def entries(summary: pd.DataFrame) -> list[dict[str, Any]]:
 
 def _entry(row: Any, world: list[Any], own: list[Any], families: bool) -> dict[str, Any]:
     place = [str(row.family)] if families else []
-    place += [f"{row.n_obstacles} obstacle{'s' if row.n_obstacles != 1 else ''}"]
+    place += [_obstacles(row.n_obstacles)]
     place += [f"{title} {cell(row)}" for title, cell in world]
     said = {
         "planner": row.planner,
@@ -73,6 +73,10 @@ def _entry(row: Any, world: list[Any], own: list[Any], families: bool) -> dict[s
         else plain(value)
         for name, value in said.items()
     }
+
+
+def _obstacles(n: Any) -> str:
+    return f"{n} obstacle{'s' if n != 1 else ''}"
 
 
 def entry_of(trials: pd.DataFrame, summary: pd.DataFrame) -> list[int]:
@@ -171,7 +175,7 @@ def pairs(trials: pd.DataFrame) -> dict[str, list[dict[str, Any]]]:
                 continue
             varied = [name for name in varying(found) if name in _WORLD_NAMES]
             for row in found.itertuples(index=False):
-                place = [f"{row.n_obstacles} obstacles", *(f"{name} {getattr(row, name)}" for name in varied)]
+                place = [_obstacles(row.n_obstacles), *(f"{name} {getattr(row, name)}" for name in varied)]
                 said[verdict].append(
                     {
                         "place": ", ".join(place),

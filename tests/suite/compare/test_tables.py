@@ -9,6 +9,7 @@ from suite.compare.published import beside, published_file, read_published
 from suite.compare.statistics import wilson_interval
 from suite.compare.tables import summarize
 from suite.errors import SuiteError
+from suite.show.latex import as_latex
 from suite.show.text import as_csv, as_markdown_page, render, render_pairs
 from suite.store.frames import TABLE_TYPES, read_trials_csv, trials_csv, trials_frame
 from suite.trial.columns import COLUMNS, Row, complete_row
@@ -200,7 +201,7 @@ def test_an_unknown_reference_lists_the_known_ones() -> None:
 def test_formats() -> None:
     trials = make_trials(pf=[True, False], rrt=[False, True])
     summary, pairs = summarize(trials), compare_in_pairs(trials, "pf", "per_step")
-    for text in (render(summary, "latex"), render_pairs(pairs, "latex")):
+    for text in (as_latex("name", summary), render_pairs(pairs, "latex")):
         assert text.count(r"\toprule") == text.count(r"\bottomrule") == 1
     for text in (render(summary, "markdown"), render_pairs(pairs, "markdown")):
         assert set(text.splitlines()[1]) == {"|", "-"}
