@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from suite.cli.cores import cores
-from suite.cli.options import Arm, Family, Obstacles, Seed, Trials, numbers, say
+from suite.cli.options import EXIT_INTERRUPTED, Arm, Family, Obstacles, Seed, Trials, numbers, say
 
 if TYPE_CHECKING:
     from scenarios import ContinuumArm
+    from suite.hard import Hard
 
 
 def generate(
@@ -62,22 +63,32 @@ def _keep_hard(
     workers: int,
 ) -> None:
     """Write what is hard, and beside it a list of who solved it, after every batch: an interrupt loses nothing."""
-    from scenarios import drawn, save_scenarios
-    from suite.hard import MOST_TRIED, Hard, keep_hard
+    from scenarios import drawn
+    from suite.hard import MOST_TRIED, keep_hard
+    from suite.runner import RunInterrupted
 
     kept: list[Hard] = []
-    for arm, family, n in cells:
-        tried = found = 0
-        for batch in keep_hard(drawn(family, n, MOST_TRIED, seed, arm), planners, wanted, workers):
-            kept += batch.kept
-            tried, found = tried + batch.tried, found + len(batch.kept)
-            save_scenarios(file, [hard.scenario for hard in kept])
-            with file.with_suffix(".csv").open("w", encoding="utf-8", newline="") as handle:
-                lines = csv.writer(handle, lineterminator="\n")
-                lines.writerow(["scenario_id", "scenario_hash", "n_obstacles", "solved_by", "failed_by"])
-                for scenario, solved_by in kept:
-                    row = scenario.id, scenario.content_hash, len(scenario.obstacles), solved_by, " ".join(planners)
-                    lines.writerow(row)
-            say(f"{family}, {n} obstacles: {found} of {wanted} hard scenarios found among {tried}")
+    try:
+        for arm, family, n in cells:
+            tried = found = 0
+            for batch in keep_hard(drawn(family, n, MOST_TRIED, seed, arm), planners, wanted, workers):
+                kept += batch.kept
+                tried, found = tried + batch.tried, found + len(batch.kept)
+                _write_hard(file, kept, planners)
+                say(f"{family}, {n} obstacles: {found} of {wanted} hard scenarios found among {tried}")
+    except (RunInterrupted, KeyboardInterrupt):
+        say(f"stopped: {file} has the {len(kept)} hard scenarios found so far")
+        raise typer.Exit(EXIT_INTERRUPTED) from None
     print(f"{file}: {len(kept)} scenarios")
     print(file.with_suffix(".csv"))
+
+
+def _write_hard(file: Path, kept: list[Hard], planners: tuple[str, ...]) -> None:
+    from scenarios import save_scenarios
+
+    save_scenarios(file, [hard.scenario for hard in kept])
+    with file.with_suffix(".csv").open("w", encoding="utf-8", newline="") as handle:
+        lines = csv.writer(handle, lineterminator="\n")
+        lines.writerow(["scenario_id", "scenario_hash", "n_obstacles", "solved_by", "failed_by"])
+        for scenario, solved_by in kept:
+            lines.writerow([scenario.id, scenario.content_hash, len(scenario.obstacles), solved_by, " ".join(planners)])
