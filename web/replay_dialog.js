@@ -9,7 +9,9 @@ const SIDE_BY_SIDE = 4;
 export async function openReplay(data, row) {
   const episode = data.episodes[row.scenario_id];
   const order = [row.place_in_scenario, ...episode.trials.keys()].filter((k, at, all) => all.indexOf(k) === at);
-  const chosen = new Set(order.slice(0, 2));
+  const won = (k) => episode.trials[k].verdicts.swept.success;
+  const beside = order.find((k) => won(k) !== won(order[0])) ?? order[1]; // one that fared otherwise says most
+  const chosen = new Set([order[0], beside].filter((k) => k !== undefined));
   const place = h("div");
   let player = null;
   const show = async () => {
