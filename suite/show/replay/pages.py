@@ -20,8 +20,6 @@ from suite.show.replay.data import scenario_data, trial_data
 
 BEFORE_S = 2.0
 """A page opens so long before the first violation."""
-NOTABLE_S = 5.0
-"""A wait that needs a word."""
 
 
 class Made(NamedTuple):
@@ -41,8 +39,7 @@ def replay_page(folder: Path, scenario_id: str | None, planners: Sequence[str]) 
     chosen = choose(folder, scenario_id, planners)
     scenario = chosen.scenario
     took_s = sum(trial.row["trial_wall_s"] or 0.0 for trial in chosen.trials)
-    if took_s > NOTABLE_S:
-        note(f"playing {len(chosen.trials)} trials again; in the run they took {took_s:.0f} s")
+    note(f"playing again what took {took_s:.1f} s in the run; the first time, kernels have to be compiled")
     played = [play(folder, scenario, trial, planners) for trial in chosen.trials]
     end_s = max(float(each.executed.times_s[-1]) for each in played)
     trials = [trial_data(scenario, each) for each in played]
