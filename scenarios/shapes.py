@@ -12,6 +12,7 @@ from typing import Annotated, Literal, NamedTuple
 
 import fcl
 import numpy as np
+import numpy.typing as npt
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
 from scenarios.motion import FloatArray, Point
@@ -178,6 +179,12 @@ class Mesh(Body):
 
     def geometry(self) -> fcl.CollisionGeometry:
         """See ``Body``."""
+        points, faces = self.hull()
+        counted = np.column_stack([np.full(len(faces), 3), faces])
+        return fcl.Convex(points, len(faces), counted.reshape(-1))
+
+    def hull(self) -> tuple[FloatArray, npt.NDArray[np.int64]]:
+        """Corners (k, 3) [m] of the hull, and of each triangle (n, 3) which, counter-clockwise seen from outside."""
         from scipy.spatial import ConvexHull
 
         vertices = np.array(self.vertices_m)
@@ -186,9 +193,8 @@ class Mesh(Body):
         points, faces = vertices[used], corners.reshape(-1, 3)
         a, b, c = (points[faces[:, k]] for k in range(3))
         inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), hull.equations[:, :3]) < 0
-        faces[inward] = faces[inward, ::-1]  # FCL wants them counter-clockwise, seen from outside
-        counted = np.column_stack([np.full(len(faces), 3), faces])
-        return fcl.Convex(points, len(faces), counted.reshape(-1))
+        faces[inward] = faces[inward, ::-1]
+        return points, faces
 
 
 Shape = Annotated[Box | Capsule | Cylinder | Mesh, Field(discriminator="kind")]

@@ -3,6 +3,7 @@
 import csv
 import os
 import re
+import shlex
 import subprocess
 import sys
 import tomllib
@@ -13,6 +14,7 @@ import pytest
 
 from planners import ArmPlanner
 from planners.plugins import GROUP
+from suite.cli.main import main
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = (ROOT / "docs" / "adding-a-planner.md").read_text(encoding="utf-8")
@@ -124,17 +126,24 @@ def test_simple_setup_drives_a_planner_as_the_page_of_the_arbiter_shows(folder: 
     assert [line.split()[0] for line in said] == ["0", "1", "2", "3"]
 
 
-def test_the_page_on_looking_shows_what_it_says(folder: Path, monkeypatch) -> None:
+def test_the_page_on_looking_shows_what_it_says(tmp_path, monkeypatch, capfd) -> None:
     monkeypatch.setenv("BROWSER", "true")  # a command that opens nothing
+    monkeypatch.chdir(tmp_path)
     page = (ROOT / "docs" / "looking.md").read_text(encoding="utf-8")
-    (folder / "work" / "scenarios").symlink_to(ROOT / "scenarios")
+    (tmp_path / "scenarios").symlink_to(ROOT / "scenarios")
     blocks = blocks_of(page)
     assert {block.language for block in blocks} == {"sh"}
-    said = [run(folder, "bash", "-ec", block.code) for block in blocks]
+    said = []
+    for command in "".join(block.code for block in blocks).splitlines():  # in this process: there are many
+        words, _, file = command.partition(" > ")
+        assert main(shlex.split(words)[1:]) == 0, command
+        said.append(capfd.readouterr().out)
+        if file:
+            (tmp_path / file).write_text(said[-1])
     quoted = re.findall(r"(?:^> .*\n)+", page, re.MULTILINE)[0].replace("\n>", "").removeprefix("> ").strip()
-    assert quoted in said[0]
+    assert quoted in said[1]
     for name in ("trial.html", "report.html", "curve.pdf", "times.pdf", "profile.pdf", "verdicts.pdf", "paths.pdf"):
-        assert (folder / "work" / name).stat().st_size > 5000, name
-    assert (folder / "work" / "table.tex").read_text().startswith("% \\usepackage{booktabs}")
+        assert (tmp_path / name).stat().st_size > 5000, name
+    assert (tmp_path / "table.tex").read_text().startswith("% \\usepackage{booktabs}")
     for picture in re.findall(r"\]\((pictures/.*?)\)", page):
         assert (ROOT / "docs" / picture).stat().st_size < 300_000

@@ -20,7 +20,9 @@ export class Tube {
     geometry.setAttribute("normal", new THREE.BufferAttribute(this.normals, 3));
     geometry.setIndex(tubeIndex(this.rings));
     for (let i = 0; i < arm.n_sections; i++) geometry.addGroup(i * perSection * AROUND * 6, perSection * AROUND * 6, i);
-    const materials = Array.from({ length: arm.n_sections }, (_, i) => material(SECTIONS[i % SECTIONS.length], opacity));
+    const materials = Array.from({ length: arm.n_sections }, (_, i) =>
+      material(SECTIONS[i % SECTIONS.length], opacity),
+    );
     this.body = new THREE.Mesh(geometry, materials);
     this.body.frustumCulled = false;
     this.end = new THREE.Mesh(new THREE.SphereGeometry(arm.radius_m, AROUND, 12), materials.at(-1));
@@ -61,7 +63,13 @@ function tubeIndex(rings) {
 }
 
 export function material(color, opacity = 1) {
-  return new THREE.MeshStandardMaterial({ color, roughness: 0.62, opacity, transparent: opacity < 1, depthWrite: opacity === 1 });
+  return new THREE.MeshStandardMaterial({
+    color,
+    roughness: 0.62,
+    opacity,
+    transparent: opacity < 1,
+    depthWrite: opacity === 1,
+  });
 }
 
 /** An obstacle's geometry about its centre, turned as it always is. */
@@ -88,7 +96,15 @@ export function shapeGeometry(shape, radius = shape.radius) {
 /** A polyline, some pixels wide, that is given anew points at every instant. */
 export class Trace {
   constructor(color, { dashed = false, opacity = 1, linewidth = 2 } = {}) {
-    const look = new LineMaterial({ color, linewidth, dashed, dashSize: 0.008, gapSize: 0.006, transparent: opacity < 1, opacity });
+    const look = new LineMaterial({
+      color,
+      linewidth,
+      dashed,
+      dashSize: 0.008,
+      gapSize: 0.006,
+      transparent: opacity < 1,
+      opacity,
+    });
     this.line = new Line2(new LineGeometry(), look);
     this.line.frustumCulled = false;
   }
@@ -104,7 +120,10 @@ export class Trace {
 
 /** A number that always faces the viewer. */
 export function label(text, color) {
-  const canvas = Object.assign(document.createElement("canvas"), { width: 96 * Math.max(1, 0.45 * text.length), height: 96 });
+  const canvas = Object.assign(document.createElement("canvas"), {
+    width: 96 * Math.max(1, 0.45 * text.length),
+    height: 96,
+  });
   const pen = canvas.getContext("2d");
   pen.font = "600 58px system-ui, sans-serif";
   pen.textAlign = "center";
@@ -116,7 +135,9 @@ export function label(text, color) {
   pen.fillText(text, canvas.width / 2, 50);
   const map = new THREE.CanvasTexture(canvas);
   map.colorSpace = THREE.SRGBColorSpace;
-  const sprite = new THREE.Sprite(new THREE.SpriteMaterial({ map, depthTest: false, transparent: true, sizeAttenuation: false }));
+  const sprite = new THREE.Sprite(
+    new THREE.SpriteMaterial({ map, depthTest: false, transparent: true, sizeAttenuation: false }),
+  );
   sprite.scale.set((0.036 * canvas.width) / 96, 0.036, 1);
   sprite.renderOrder = 5;
   return sprite;

@@ -18,5 +18,6 @@ await build({
   banner: { js: `/* of the sources ${digest.digest("hex").slice(0, 16)} */` },
   outfile: `${out}/suite.js`,
 });
-if (/<\/script|<!--/i.test(readFileSync(`${out}/suite.js`, "utf8"))) throw new Error("suite.js would end its own element");
+if (/<\/script|<!--/i.test(readFileSync(`${out}/suite.js`, "utf8")))
+  throw new Error("suite.js would end its own element");
 copyFileSync("node_modules/three/LICENSE", `${out}/THREE-LICENSE`);

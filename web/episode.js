@@ -54,7 +54,8 @@ async function decodeLooks(looks, scenario) {
       const at = (when) => (when - looks.from[k]) / looks.step;
       const last = looks.from[k] + looks.step * (looks.counts[k] - 1);
       const ahead = [];
-      for (let when = time; when < last; when += looks.step / 2) ahead.push(triples(rowAt(centers, at(when), starts[k], looks.counts[k])));
+      for (let when = time; when < last; when += looks.step / 2)
+        ahead.push(triples(rowAt(centers, at(when), starts[k], looks.counts[k])));
       ahead.push(triples(rowAt(centers, at(last), starts[k], looks.counts[k])));
       return {
         looked: looks.from[k],

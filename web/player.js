@@ -9,7 +9,8 @@ import { Stage } from "./stage.js";
 import { View } from "./view.js";
 
 const SPEEDS = [0.25, 0.5, 1, 2, 5, 10];
-const KEYS = "Space plays, ← → step 0.1 s (with Shift 1 s), Home and End, , and . change speed, V jumps to the next violation, C puts the camera back.";
+const KEYS =
+  "Space plays, ← → step 0.1 s (with Shift 1 s), Home and End, , and . change speed, V jumps to the next violation, C puts the camera back.";
 
 /** Show `data` inside `place`; resolves when the first picture is drawn. Returns what ends it. */
 export async function play(place, data) {
@@ -28,7 +29,12 @@ export async function play(place, data) {
     h("header", {}, h("h2", {}, data.scenario.id), h("span", { class: "run" }, data.run)),
     screen,
     controls,
-    h("div", { class: "bars" }, ...trials.map((trial) => h("div", { class: "row" }, h("b", {}, trial.planner), bar(trial, clock))), trials.length ? h("div", { class: "row" }, h("b"), axis(clock)) : null),
+    h(
+      "div",
+      { class: "bars" },
+      ...trials.map((trial) => h("div", { class: "row" }, h("b", {}, trial.planner), bar(trial, clock))),
+      trials.length ? h("div", { class: "row" }, h("b"), axis(clock)) : null,
+    ),
     trials.length ? barLegend(trials) : null,
     h("div", { class: "stories" }, ...trials.map(story)),
     legend(trials),
@@ -87,22 +93,37 @@ function surroundings(scenario, trials) {
     for (const state of states) points.push(...backbone(state, scenario.arm, 3).map(({ p }) => p));
     points.push(...scenario.centers(time).filter((p) => Math.hypot(...p) < 1.1 * reach));
   }
-  const center = [0, 1, 2].map((i) => (Math.min(...points.map((p) => p[i])) + Math.max(...points.map((p) => p[i]))) / 2);
-  const radius = Math.max(...points.map((p) => Math.hypot(...p.map((x, i) => x - center[i])))) + 2 * scenario.arm.radius_m;
+  const center = [0, 1, 2].map(
+    (i) => (Math.min(...points.map((p) => p[i])) + Math.max(...points.map((p) => p[i]))) / 2,
+  );
+  const radius =
+    Math.max(...points.map((p) => Math.hypot(...p.map((x, i) => x - center[i])))) + 2 * scenario.arm.radius_m;
   return { center, radius };
 }
 
 function panel(trial) {
   const readout = h("p", { class: "readout" });
   const chip = trial && h("span", { class: `chip ${trial.outcome}` }, trial.outcome.replace("_", " "));
-  const box = h("div", { class: "panel" }, trial && h("h3", {}, trial.planner, " ", chip), trial && verdicts(trial), readout);
+  const box = h(
+    "div",
+    { class: "panel" },
+    trial && h("h3", {}, trial.planner, " ", chip),
+    trial && verdicts(trial),
+    readout,
+  );
   const say = (time, { near, expected, touched }) => {
     const parts = [];
     if (trial && time > trial.end + 1e-6) parts.push(`ended at ${trial.end.toFixed(1)} s`);
     else if (trial) parts.push(trial.holds.some(([from, to]) => time >= from && time < to) ? "holding" : "moving");
+    const { time: first, kind } = trial?.verdicts.swept ?? {};
+    if (kind === "collision" && time > first && !touched) parts.push(`touched at ${first.toFixed(2)} s`);
     if (near && near.obstacle >= 0) {
       const millimetres = 1000 * near.metres;
-      parts.push(touched || millimetres <= 0 ? `obstacle ${near.obstacle + 1} at section ${near.section}: contact` : `nearest: obstacle ${near.obstacle + 1} to section ${near.section}, ${millimetres.toFixed(1)} mm`);
+      parts.push(
+        touched || millimetres <= 0
+          ? `obstacle ${near.obstacle + 1} at section ${near.section}: contact`
+          : `nearest: obstacle ${near.obstacle + 1} to section ${near.section}, ${millimetres.toFixed(1)} mm`,
+      );
     }
     if (expected) parts.push(`looked at ${expected.looked.toFixed(0)} s`);
     readout.textContent = parts.join(" · ");
@@ -112,15 +133,31 @@ function panel(trial) {
 }
 
 function verdicts(trial) {
-  const said = (name) => h("span", { class: trial.verdicts[name].success ? "good" : "bad" }, `${trial.verdicts[name].success ? "✓" : "✗"} ${VERDICTS[name]}`);
+  const said = (name) =>
+    h(
+      "span",
+      { class: trial.verdicts[name].success ? "good" : "bad" },
+      `${trial.verdicts[name].success ? "✓" : "✗"} ${VERDICTS[name]}`,
+    );
   return h("p", { class: "verdicts" }, ...Object.keys(VERDICTS).map(said));
 }
 
 function controlBar(clock, stage, trials) {
   const button = h("button", { class: "play", onclick: () => clock.toggle() }, "Play");
-  const slider = h("input", { type: "range", min: 0, max: clock.end, step: 0.01, "aria-label": "time", oninput: () => clock.seek(Number(slider.value)) });
+  const slider = h("input", {
+    type: "range",
+    min: 0,
+    max: clock.end,
+    step: 0.01,
+    "aria-label": "time",
+    oninput: () => clock.seek(Number(slider.value)),
+  });
   const shown = h("output", { class: "time" });
-  const speed = h("select", { "aria-label": "speed", onchange: () => (clock.speed = Number(speed.value)) }, ...SPEEDS.map((value) => h("option", { value, selected: value === clock.speed }, `${value}×`)));
+  const speed = h(
+    "select",
+    { "aria-label": "speed", onchange: () => (clock.speed = Number(speed.value)) },
+    ...SPEEDS.map((value) => h("option", { value, selected: value === clock.speed }, `${value}×`)),
+  );
   const jump = h("button", { onclick: () => nextViolation(clock, trials), title: "key V" }, "Next violation");
   const home = h("button", { onclick: () => stage.goHome(), title: "key C" }, "Camera");
   const element = h("div", { class: "controls" }, button, shown, slider, speed, trials.length ? jump : null, home);
@@ -134,14 +171,22 @@ function controlBar(clock, stage, trials) {
 }
 
 function nextViolation(clock, trials) {
-  const times = trials.flatMap((trial) => Object.keys(VERDICTS).map((name) => trial.verdicts[name].time)).filter((time) => time !== null);
+  const times = trials
+    .flatMap((trial) => Object.keys(VERDICTS).map((name) => trial.verdicts[name].time))
+    .filter((time) => time !== null);
   const later = times.filter((time) => time > clock.time + 1e-6);
   const wanted = later.length ? later : times;
   if (wanted.length) clock.seek(Math.min(...wanted));
 }
 
 function key(event, clock, stage, trials) {
-  if (event.target.closest("input:not([type=range]), select, textarea") || event.ctrlKey || event.metaKey || event.altKey) return;
+  if (
+    event.target.closest("input:not([type=range]), select, textarea") ||
+    event.ctrlKey ||
+    event.metaKey ||
+    event.altKey
+  )
+    return;
   const step = event.shiftKey ? 1 : 0.1;
   const faster = (by) => {
     const at = SPEEDS.indexOf(clock.speed) + by;
@@ -166,18 +211,44 @@ function key(event, clock, stage, trials) {
 }
 
 function story(trial) {
-  return h("article", {}, h("h3", {}, trial.planner), h("p", {}, trial.story.join(" ") || "Nothing to tell."), trial.remark ? h("p", { class: "remark" }, trial.remark) : null);
+  return h(
+    "article",
+    {},
+    h("h3", {}, trial.planner),
+    h("p", {}, trial.story.join(" ") || "Nothing to tell."),
+    trial.remark ? h("p", { class: "remark" }, trial.remark) : null,
+  );
 }
 
 function barLegend(trials) {
-  const items = [["moving", "moving"], ["holding", "holding"], ["violation swept", "first violation of a verdict"], ["arrival", "at the goal"]];
+  const items = [
+    ["moving", "moving"],
+    ["holding", "holding"],
+    ["violation swept", "first violation of a verdict"],
+    ["arrival", "at the goal"],
+  ];
   if (trials.some((trial) => trial.looks)) items.splice(2, 0, ["solve", "solve"], ["nopath", "solve without a path"]);
-  return h("p", { class: "legend" }, ...items.map(([name, text]) => h("span", {}, h("i", { class: `key ${name}` }), text)));
+  return h(
+    "p",
+    { class: "legend" },
+    ...items.map(([name, text]) => h("span", {}, h("i", { class: `key ${name}` }), text)),
+  );
 }
 
 function legend(trials) {
-  const items = [["obstacle", "obstacle, and where it has been"], ["goal", "goal with its tolerance"]];
+  const items = [
+    ["obstacle", "obstacle, and where it has been"],
+    ["goal", "goal with its tolerance"],
+  ];
   if (trials.length) items.push(["trail", "way of the tip"]);
-  if (trials.some((trial) => trial.looks)) items.push(["expected", "where the planner expects obstacles, grown by its margin, and from here on"], ["path", "its path still ahead (tip)"]);
-  return h("p", { class: "legend" }, ...items.map(([name, text]) => h("span", {}, h("i", { class: `key ${name}` }), text)));
+  if (trials.some((trial) => trial.looks))
+    items.push(
+      ["expected", "where the planner expects obstacles, grown by its margin, and from here on"],
+      ["path", "its path still ahead (tip)"],
+    );
+  return h(
+    "p",
+    { class: "legend" },
+    ...items.map(([name, text]) => h("span", {}, h("i", { class: `key ${name}` }), text)),
+  );
 }

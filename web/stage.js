@@ -36,7 +36,7 @@ export class Stage {
     const { width, height } = this.boxes[0];
     const { center, radius } = this.sphere;
     const half = Math.tan((this.camera.fov * Math.PI) / 360) * Math.min(1, width / height);
-    const far = (0.9 * radius) / Math.sin(Math.atan(half));
+    const far = (0.97 * radius) / Math.sin(Math.atan(half));
     const norm = Math.hypot(...this.home);
     this.controls.target.set(...center);
     this.camera.position.set(...center.map((c, i) => c + (far * this.home[i]) / norm));

@@ -13,7 +13,11 @@ export function sortable(columns, rows, { limit = Infinity, className = "" } = {
       by = k;
       fill();
     };
-    return h("th", { class: column.left ? "left" : "", scope: "col" }, h("button", { onclick: press, title: column.hint }, column.title));
+    return h(
+      "th",
+      { class: column.left ? "left" : "", scope: "col" },
+      h("button", { onclick: press, title: column.hint }, column.title),
+    );
   });
   const order = () => {
     if (by === null) return rows;
@@ -27,12 +31,23 @@ export function sortable(columns, rows, { limit = Infinity, className = "" } = {
   };
   const fill = () => {
     heads.forEach((head, k) => head.setAttribute("aria-sort", by === k ? (down ? "descending" : "ascending") : "none"));
-    body.replaceChildren(...order().slice(0, shown).map((row) => h("tr", {}, ...columns.map((column) => h("td", { class: column.left ? "left" : "" }, column.cell(row))))));
+    body.replaceChildren(
+      ...order()
+        .slice(0, shown)
+        .map((row) =>
+          h("tr", {}, ...columns.map((column) => h("td", { class: column.left ? "left" : "" }, column.cell(row)))),
+        ),
+    );
     more.textContent = `${rows.length - shown} more`;
     more.hidden = rows.length <= shown;
   };
   fill();
-  const element = h("div", { class: `table ${className}` }, h("table", {}, h("thead", {}, h("tr", {}, ...heads)), body), more);
+  const element = h(
+    "div",
+    { class: `table ${className}` },
+    h("table", {}, h("thead", {}, h("tr", {}, ...heads)), body),
+    more,
+  );
   return {
     element,
     set(next) {

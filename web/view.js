@@ -8,6 +8,7 @@ import { before } from "./unpack.js";
 
 const PER_SECTION = 24;
 const TRAIL_S = 8;
+const GLOW_S = 1; // what touches glows so long, if it does not touch for longer
 
 export class View {
   constructor(scenario, trial) {
@@ -58,15 +59,30 @@ export class View {
       obstacle.trail.through(scenario.trail(j, Math.max(time - TRAIL_S, scenario.trace.start), time));
     });
     const expected = this.showExpected(time);
-    const near = scenario.allRound && nearest(frames, scenario.arm, PER_SECTION, centers, scenario.shapes.map((s) => s.radius));
+    const near =
+      scenario.allRound &&
+      nearest(
+        frames,
+        scenario.arm,
+        PER_SECTION,
+        centers,
+        scenario.shapes.map((s) => s.radius),
+      );
     const [obstacle, section] = trial?.contact ?? [0, 0];
-    const touched = trial?.verdicts.swept.kind === "collision" && time >= trial.verdicts.swept.time - 1e-3;
+    const first = trial?.verdicts.swept.kind === "collision" ? trial.verdicts.swept.time : Infinity;
+    const touched = time >= first - 1e-3 && (time < first + GLOW_S || (near && near.metres <= 0));
     this.tube.mark(touched ? section : 0);
-    this.obstacles.forEach(({ body }, j) => body.material.emissive.set(touched && j + 1 === obstacle ? "#8a0f00" : "#000000"));
+    this.obstacles.forEach(({ body }, j) =>
+      body.material.emissive.set(touched && j + 1 === obstacle ? "#8a0f00" : "#000000"),
+    );
     if (trial) {
       this.tipTrail.through([...trial.tips.slice(0, before(trial.tipTimes, time) + 1), frames.at(-1).p]);
       const ahead = trial.looks?.path(time) ?? [];
-      this.path.through(ahead.length && time < trial.end ? [frames.at(-1).p, ...ahead.map((state) => backbone(state, scenario.arm, 1).at(-1).p)] : []);
+      this.path.through(
+        ahead.length && time < trial.end
+          ? [frames.at(-1).p, ...ahead.map((state) => backbone(state, scenario.arm, 1).at(-1).p)]
+          : [],
+      );
     }
     return { near, expected, touched };
   }
@@ -88,14 +104,20 @@ function ground({ length_m, radius_m, n_sections, section_length_m }) {
   const length = length_m ?? n_sections * section_length_m;
   const grid = new THREE.GridHelper(2 * length, 18, "#d9d4c7", "#ebe8df").rotateX(Math.PI / 2);
   Object.assign(grid.material, { transparent: true, opacity: 0.6 }); // an arm may hang below it
-  const base = new THREE.Mesh(new THREE.CylinderGeometry(1.9 * radius_m, 2.2 * radius_m, 0.012, 40).rotateX(Math.PI / 2), material("#6d6a63"));
+  const base = new THREE.Mesh(
+    new THREE.CylinderGeometry(1.9 * radius_m, 2.2 * radius_m, 0.012, 40).rotateX(Math.PI / 2),
+    material("#6d6a63"),
+  );
   base.position.z = -0.006;
   return [grid, base];
 }
 
 function goal({ goal: point, tolerance }) {
   const ball = new THREE.Mesh(new THREE.SphereGeometry(tolerance, 20, 14), material("#f5c400"));
-  const cage = new THREE.Mesh(new THREE.IcosahedronGeometry(tolerance * 1.3, 1), new THREE.MeshBasicMaterial({ color: GOAL, wireframe: true, transparent: true, opacity: 0.25 }));
+  const cage = new THREE.Mesh(
+    new THREE.IcosahedronGeometry(tolerance * 1.3, 1),
+    new THREE.MeshBasicMaterial({ color: GOAL, wireframe: true, transparent: true, opacity: 0.25 }),
+  );
   const name = label("goal", GOAL);
   name.position.z = tolerance + 0.022;
   const group = new THREE.Group().add(ball, cage, name);

@@ -88,9 +88,10 @@ def _print(run: Path, printed: Printed, format: Format) -> None:
     elif format == "latex":
         print(as_latex(run.resolve().name, summary, columns), end="")
     else:
+        rendered = text.render(summary, format, columns)
         if format == "markdown" and (said := sentence(summary)):
             print(f"{said}\n")
-        print(text.render(summary, format, columns), end="")
+        print(rendered, end="")
     if pairs is not None:
         print()
         if format == "terminal":

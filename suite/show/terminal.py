@@ -24,9 +24,9 @@ NARROW = 80
 
 def print_summary(summary: pd.DataFrame, names: Sequence[str] | None = None) -> None:
     """Print conditions and summary to stdout, with a gap between numbers of obstacles; some columns where named."""
+    titles, rows = cells(summary, names)
     if said := sentence(summary):
         console().print(f"{said}\n", markup=False, highlight=False)
-    titles, rows = cells(summary, names)
     _print_table(titles, rows, summary.groupby(WORLDS, sort=False, dropna=False).ngroup().tolist())
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections import Counter
 from collections.abc import Callable, Sequence
 from typing import Any, Literal, NamedTuple
 
@@ -85,13 +86,17 @@ def cells(summary: pd.DataFrame, names: Sequence[str] | None = None) -> tuple[li
     """
     columns = shown_columns(summary)
     if names is not None:
-        known = {
-            column.title.rpartition(" ")[0] if _UNIT.search(column.title) else column.title: column
-            for column in columns
-        }
-        columns = [known[known_name("--columns", _UNIT.sub("", name), known)] for name in names]
+        columns = _chosen(columns, names)
     rows = [[column.cell(row) for column in columns] for row in summary.itertuples(index=False)]
     return [column.title for column in columns], rows
+
+
+def _chosen(columns: Sequence[Shown], names: Sequence[str]) -> list[Shown]:
+    """Those called ``names``, in that order."""
+    titles = {column.title: column for column in columns}
+    bare = Counter(_UNIT.sub("", title) for title in titles)
+    known = {short: column for title, column in titles.items() if bare[short := _UNIT.sub("", title)] == 1} | titles
+    return [known[name] if name in known else titles[known_name("--columns", name, titles)] for name in names]
 
 
 def render(summary: pd.DataFrame, format: Literal["markdown", "csv"], names: Sequence[str] | None = None) -> str:

@@ -7,7 +7,7 @@ import io
 import json
 import re
 import sqlite3
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
@@ -239,18 +239,16 @@ class Journal:
             scenario_id, planner, blob, *values = self._db.execute(row, number).fetchone()
             yield self._executed(scenario_id, planner, blob, dict(zip(names, values, strict=True)))
 
-    def kept(self, scenario_id: str | None = None) -> Iterator[tuple[Row, Executed]]:
-        """Rows that are asked for, of one scenario or of all, with what was executed, sorted as in the tables.
+    def kept(self, scenarios: Container[str]) -> Iterator[tuple[Row, Executed]]:
+        """Rows that are asked for of ``scenarios``, given by id, with what was executed, sorted as in the tables.
 
         Raises:
             SuiteError: A value is not of its column's type, or what is stored is no trajectory.
         """
-        where, given = ("", []) if scenario_id is None else ("WHERE scenario_id = ?", [scenario_id])
-        numbers = self._db.execute(f"SELECT number FROM shown {where} ORDER BY {_SORTED}", given).fetchall()
-        for number in numbers:
-            *values, blob = self._db.execute(
-                f"SELECT {_NAMES}, executed FROM trials WHERE number = ?", number
-            ).fetchone()
+        found = self._db.execute(f"SELECT number, scenario_id FROM shown ORDER BY {_SORTED}").fetchall()
+        for number in (number for number, scenario_id in found if scenario_id in scenarios):
+            one = self._db.execute(f"SELECT {_NAMES}, executed FROM trials WHERE number = ?", [number])
+            *values, blob = one.fetchone()
             row = self._complete(values)
             conditions = {column.name: row[column.name] for column in CONDITIONS}
             yield row, self._executed(row["scenario_id"], row["planner"], blob, conditions)

@@ -96,7 +96,7 @@ MUTANTS = (
     Mutant(
         "an arrival is called reached whatever the audit says",
         EPISODE,
-        'outcome = "reached" if judged.per_step.success else "collided"',
+        'outcome = "reached" if judged.per_step.success else "timeout" if late else "collided"',
         'outcome = "reached"',
         TESTS_OF_EPISODE,
     ),
@@ -222,8 +222,8 @@ MUTANTS = (
     Mutant(
         "rows of the first version pass for ones of the present code",
         "suite/store/run_folder.py",
-        'if "schema_version" in manifest or not (',
-        "if not (",
+        'house if is_house(house) and "schema_version" not in manifest else None',
+        "house if is_house(house) else None",
         ("tests/suite/store/test_old_runs.py::test_a_manifest_that_is_new_says_nothing_of_old_rows",),
     ),
     Mutant(

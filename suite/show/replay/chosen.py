@@ -75,7 +75,7 @@ def choose(folder: Path, scenario_id: str | None, planners: Sequence[str]) -> Ch
             f"--scenario: found {scenario_id!r}, allowed one of the {len(names)} of {folder}; nearest: {near[0]}"
         )
     apart = telling_apart(rows)
-    kept = [Trial(row, executed, _label(row, apart)) for row, executed in _kept(folder, rows, scenario_id)]
+    kept = [Trial(row, executed, label_of_trial(row, apart)) for row, executed in _kept(folder, rows, scenario_id)]
     kept = [trial for trial in kept if trial.row["planner"] in wanted]
     trials = sorted(kept, key=lambda trial: wanted.index(trial.row["planner"]))
     if not trials:
@@ -153,10 +153,11 @@ def _kept(folder: Path, rows: pd.DataFrame, scenario_id: str) -> Sequence[tuple[
         return [(complete_row(row), None) for row in named]
     try:
         with Journal(folder / JOURNAL, read_only=True) as journal:
-            return list(journal.kept(scenario_id))
+            return list(journal.kept({scenario_id}))
     except (OSError, sqlite3.Error) as error:
         raise SuiteError(f"{folder / JOURNAL}: cannot be read: {error}"[:300]) from None
 
 
-def _label(row: Row, apart: Sequence[str]) -> str:
+def label_of_trial(row: Row, apart: Sequence[str]) -> str:
+    """The planner, with the conditions ``apart`` that tell its trials on one scenario from one another."""
     return ", ".join([str(row["planner"]), *(f"{name.replace('_', ' ')} {row[name]}" for name in apart)])

@@ -111,18 +111,6 @@ def _shape(obstacle: Obstacle) -> dict[str, Any]:
         return {"kind": "sphere", "radius": obstacle.radius_m}
     said: dict[str, Any] = {"kind": shape.kind, "rotation": shape.rotation.reshape(-1).tolist()}
     if isinstance(shape, Mesh):
-        return said | {"triangles": _triangles(shape)}
+        points, faces = shape.hull()
+        return said | {"triangles": points[faces].reshape(-1, 3).tolist()}
     return said | {name: getattr(shape, name) for name in ("size_m", "radius_m", "length_m") if hasattr(shape, name)}
-
-
-def _triangles(mesh: Mesh) -> list[list[float]]:
-    """Corners of the hull's triangles, three after one another, counter-clockwise seen from outside [m]."""
-    from scipy.spatial import ConvexHull
-
-    vertices = np.array(mesh.vertices_m)
-    hull = ConvexHull(vertices)
-    corners, normals = vertices[hull.simplices], hull.equations[:, :3]
-    sides = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    inward = np.einsum("ij,ij->i", sides, normals) < 0
-    corners[inward] = corners[inward][:, ::-1]
-    return [list(point) for point in corners.reshape(-1, 3).tolist()]

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from scenarios import load_scenarios
 from suite.errors import SuiteError
+from suite.progress import note
 from suite.show.page import page
 from suite.show.replay.again import play
 from suite.show.replay.chosen import choose
@@ -37,6 +38,8 @@ def replay_page(folder: Path, scenario_id: str | None, planners: Sequence[str]) 
     """
     chosen = choose(folder, scenario_id, planners)
     scenario = chosen.scenario
+    took_s = sum(trial.row["trial_wall_s"] or 0.0 for trial in chosen.trials)
+    note(f"playing again what took {took_s:.1f} s in the run; the first time, kernels have to be compiled")
     played = [play(folder, scenario, trial, planners) for trial in chosen.trials]
     end_s = max(float(each.executed.times_s[-1]) for each in played)
     trials = [trial_data(scenario, each) for each in played]

@@ -10,6 +10,7 @@ import suite
 from suite.cli.main import main
 from suite.show.latex import _aligned, as_latex, escaped
 
+ROOT = Path(__file__).resolve().parents[3]
 DOCUMENT = "\\documentclass{article}\n\\usepackage{booktabs}\n\\begin{document}\n%s\\end{document}\n"
 
 
@@ -54,6 +55,16 @@ def test_columns_are_chosen_by_name_with_or_without_unit(run, capfd) -> None:
     assert "nearest: swept" in capfd.readouterr().err
     assert main(["table", str(run), "--columns", "planner", "--format", "csv"]) == 2
     assert main(["table", str(run), "--columns", "planner,arrival"]) == 0
+
+
+def test_names_that_two_columns_share_need_their_unit(capfd) -> None:
+    table = ["table", str(ROOT / "results" / "table1"), "--against", "published", "--format", "markdown", "--columns"]
+    assert main([*table, "planner,published"]) == 2
+    out, err = capfd.readouterr()
+    assert out == ""
+    assert "nearest: published s" in err
+    assert main([*table, "planner,published s"]) == 0
+    assert "published s" in capfd.readouterr().out
 
 
 @pytest.mark.skipif(not (shutil.which("tectonic") or shutil.which("pdflatex")), reason="found no tectonic, no pdflatex")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from test_packed import unpacked
+from test_packed_arrays import unpacked
 
 import suite
 from scenarios import make_world
