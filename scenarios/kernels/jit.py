@@ -31,6 +31,8 @@ from numba.core.compiler_lock import global_compiler_lock
 
 DIGEST_BYTES = 32
 _ROOT = Path(__file__).resolve().parents[2]
+_PACKAGES = ("scenarios", "planners", "suite", "tests", "benchmarks")
+"""Packages of this project. Installed, they have every library beside them, which would take minutes to follow."""
 
 
 def cache_folder() -> Path:
@@ -86,6 +88,8 @@ def _closure(file: Path) -> set[Path]:
         source = pending.pop()
         found.add(source)
         for package, imported in _imports(source.read_bytes()):
+            if package.partition(".")[0] not in _PACKAGES:
+                continue
             module = _ROOT.joinpath(*package.split("."))
             names = [module / name for name in imported]  # ``from package import module``
             files = [module / "__init__.py", *(path.with_suffix(".py") for path in (module, *names))]

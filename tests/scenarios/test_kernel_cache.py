@@ -36,6 +36,7 @@ def scaled(x):
 def house(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """A house of two kernel files, one calling the other, with a cache of its own."""
     monkeypatch.setattr(jit, "_ROOT", tmp_path)
+    monkeypatch.setattr(jit, "_PACKAGES", ("cache_probe",))
     monkeypatch.setenv("SUITE_CACHE_DIR", str(tmp_path / "cache"))
     monkeypatch.syspath_prepend(str(tmp_path))
     (tmp_path / "cache_probe").mkdir()
@@ -69,9 +70,19 @@ def test_what_is_not_imported_does_not_count(house: Path) -> None:
     assert jit.source_hash(house / "callee.py") != before
 
 
+def test_libraries_that_are_installed_beside_the_project_are_not_followed(house: Path) -> None:
+    (house / "user.py").write_text("from library.deep import thing\nfrom cache_probe.callee import factor\n")
+    library = house.parent / "library"
+    library.mkdir()
+    (library / "__init__.py").write_text("")
+    (library / "deep.py").write_text("thing = 1\n")
+    assert jit._closure(house / "user.py") == {house / name for name in ("user.py", "callee.py")}
+
+
 def test_kernel_files_import_in_the_one_way_that_the_hash_follows() -> None:
     # ``import package.module`` would go unseen.
     files = [*jit._ROOT.glob("scenarios/kernels/*.py"), *jit._ROOT.glob("*/**/_kernels.py")]
+    files = [file for file in files if "from scenarios.kernels.jit import" in file.read_text(encoding="utf-8")]
     assert len(files) > 5
     for file in files:
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
@@ -168,6 +179,7 @@ sys.path[:0] = {[str(folder.parent), *sys.path]!r}
 from pathlib import Path
 from scenarios.kernels import jit
 jit._ROOT = Path({str(folder.parent)!r})
+jit._PACKAGES = ("cache_probe",)
 from cache_probe.caller import scaled
 print(scaled(10))
 """
