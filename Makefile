@@ -17,7 +17,7 @@ run: $(RUNNABLE)
 	$(BIN)/suite run --planners temporal,rrt,pf
 
 test: $(TESTABLE)
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest --numprocesses auto --dist loadfile
 
 mutants: $(TESTABLE)
 	$(BIN)/python -m tests.mutants $(MUTANTS)

@@ -15,6 +15,7 @@ from scenarios.collision import is_motion_valid
 from scenarios.errors import ScenarioError
 from scenarios.families.base import Family
 from scenarios.families.crossing import CrossingFamily
+from scenarios.families.hard import HardFamily, origins
 from scenarios.families.orbit import OrbitFamily
 from scenarios.families.wander import WanderFamily
 from scenarios.scenario import Scenario
@@ -22,7 +23,12 @@ from scenarios.shaped_world import shaped_world
 from scenarios.spec import known_name, parse_settings, parse_spec
 from scenarios.world import positions, sample_times, sample_world
 
-FAMILIES: dict[str, type[Family]] = {"orbit": OrbitFamily, "crossing": CrossingFamily, "wander": WanderFamily}
+FAMILIES: dict[str, type[Family]] = {
+    "orbit": OrbitFamily,
+    "crossing": CrossingFamily,
+    "wander": WanderFamily,
+    "hard": HardFamily,
+}
 
 
 def parse_family(spec: str) -> tuple[str, Family]:
@@ -65,9 +71,30 @@ def drawn(family: str, n_obstacles: int, trials: int, seed: int, arm: ContinuumA
     if not 0 <= seed < 2**63:
         raise ScenarioError(f"seed: found {seed}, allowed 0 to 2^63 - 1")
     arm = arm or ContinuumArm()
+    if isinstance(settings, HardFamily):
+        yield from _listed(n_obstacles, trials, arm)
+        return
     end = _ending(settings, arm)
     for k in range(trials):
         yield _draw(name, settings, n_obstacles, k, seed, arm, end)
+
+
+def _listed(n_obstacles: int, trials: int, arm: ContinuumArm) -> Iterator[Scenario]:
+    """The first ``trials`` of the hard scenarios, whatever the seed of the experiment is."""
+    known = origins()
+    if arm != ContinuumArm():
+        raise ScenarioError("hard: found another arm, allowed the default one, with which the list was made")
+    if n_obstacles not in known:
+        raise ScenarioError(f"hard: found {n_obstacles} obstacles, allowed {', '.join(map(str, known))}")
+    listed = known[n_obstacles]
+    if trials > len(listed):
+        raise ScenarioError(
+            f"hard: found {trials} trials, allowed the {len(listed)} listed with {n_obstacles} obstacles"
+        )
+    for seed, number in listed[:trials]:
+        scenario = _draw("orbit", OrbitFamily(), n_obstacles, number, seed, arm, "")
+        named = {"id": scenario.id.replace("orbit", "hard"), "family": "hard"}
+        yield scenario.model_copy(update=named | {"parameters": {"n_obstacles": n_obstacles}})
 
 
 def _ending(*models: BaseModel) -> str:

@@ -8,9 +8,9 @@ from functools import partial
 from planners import PlannerSpec
 from planners.first_use import predictor_parts, warm_up_planner, warm_up_predictor, warm_up_problem
 from scenarios import ContinuumArm, Scenario, start_is_free
-from scenarios.proofs import prove
 from suite.auditor import audit, collides
 from suite.backends.job import Part
+from suite.trial.impossibility import impossibility
 from suite.trial.task import TrialTask
 
 TYPICAL_S = {"arc": 8.0, "gp": 6.0, "kalman": 4.0}
@@ -35,7 +35,7 @@ def warm_up_parts(tasks: Iterable[TrialTask]) -> list[Part]:
         Part("audit", partial(_warm_up_audit, list(examples.values())), TYPICAL_HOUSE_S),
         Part("collision checks", partial(_for_each, warm_up_problem, arms), TYPICAL_HOUSE_S),
         *(
-            [Part("proofs", partial(_for_each_example, prove, list(examples.values())), TYPICAL_HOUSE_S)]
+            [Part("proofs", partial(_warm_up_proofs, list(examples.values())), TYPICAL_HOUSE_S)]
             if any(spec.is_bound for spec, _ in planners.values())
             else []
         ),
@@ -69,9 +69,9 @@ def _warm_up_planner(spec: PlannerSpec, predictors: Iterable[str], arms: Iterabl
             warm_up_planner(spec, predictor, arm)
 
 
-def _for_each_example(warm_up: Callable[[Scenario], object], examples: Iterable[Scenario]) -> None:
+def _warm_up_proofs(examples: Iterable[Scenario]) -> None:
     for scenario in examples:
-        warm_up(scenario)
+        impossibility(scenario)
 
 
 def _for_each(warm_up: Callable[[ContinuumArm], None], arms: Iterable[ContinuumArm]) -> None:

@@ -11,7 +11,7 @@ import json
 import sqlite3
 from pathlib import Path
 
-from suite.errors import SuiteError
+from scenarios import UserError
 from suite.files import write_text
 from suite.store.journal import Journal
 from suite.store.run_folder import DERIVED, JOURNAL, MANIFEST, STAMP
@@ -27,7 +27,7 @@ def is_finished(folder: Path, asked: str) -> bool:
             return False
         with Journal(folder / JOURNAL, read_only=True) as journal:
             return bool(file.read_text(encoding="utf-8") == _text(folder, asked, journal))
-    except (OSError, UnicodeDecodeError, SuiteError, sqlite3.Error):
+    except (OSError, UnicodeDecodeError, UserError, sqlite3.Error):
         return False  # the long way round says what is wrong
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 from scenarios import Scenario
-from scenarios.proofs import prove
 
 
 def impossibility(scenario: Scenario) -> dict[str, str | float | None]:
@@ -13,6 +12,8 @@ def impossibility(scenario: Scenario) -> dict[str, str | float | None]:
 
     It is proven for the executable verdict (docs/possible.md). Nothing is proven where a proof only gives a deadline.
     """
+    from scenarios.proofs import prove  # hulls need a part of SciPy that no other trial should wait for
+
     bound = prove(scenario).executable
     is_proven = bound.outcome == "impossible"
     return {

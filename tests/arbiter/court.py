@@ -13,6 +13,7 @@ from scenarios.arm import ContinuumArm, FloatArray
 from scenarios.world import SampledWorld
 
 DISTANCES_AGREE_M = 1e-9
+UNLIMITED = math.inf, math.inf
 
 
 class Court:
@@ -100,13 +101,13 @@ class Court:
         world: SampledWorld,
         *,
         margin_m: float = 0.0,
-        unlimited: bool = False,
+        rates: tuple[float, float] | None = None,
     ) -> bool:
-        """What the validator says of a motion among obstacles grown by ``margin_m``, at the arm's rates or at any."""
+        """The validator on a motion among obstacles grown by ``margin_m``, within ``rates``, else the arm's."""
         grown = SampledWorld(*world)._replace(radii_m=np.asarray(world.radii_m) + margin_m)
         arm = self._arm()
-        if unlimited:
-            arm = arm.model_copy(update={"max_bend_rate_rad_s": math.inf, "max_tip_speed_m_s": math.inf})
+        if rates:
+            arm = arm.model_copy(update={"max_bend_rate_rad_s": rates[0], "max_tip_speed_m_s": rates[1]})
         validator = self._in_session(grown, arm).validator
         checks = validator.checks
         free = validator.check(np.asarray(q0).copy(), t0_s, np.asarray(q1).copy(), t1_s)

@@ -17,7 +17,7 @@ from planners.search import scene
 from planners.search.certificate import _kernels as certificate
 from planners.search.configurations import _kernels as configurations
 
-from . import _kernels as asking
+from . import asking
 from .court import COURT
 
 

@@ -1,11 +1,14 @@
 """The generator: the same draws whatever is asked for beside them, and no hard case removed; for every family."""
 
+import csv
+
 import numpy as np
 import pytest
 from twins.clearance import sampled_clearance
 
 from scenarios import (
     FAMILIES,
+    ContinuumArm,
     Obstacle,
     Scenario,
     ScenarioError,
@@ -15,9 +18,12 @@ from scenarios import (
     generate,
     start_is_free,
 )
+from scenarios.families.hard import LIST
+
+DRAWN = [family for family in FAMILIES if family != "hard"]
 
 
-@pytest.mark.parametrize("family", FAMILIES)
+@pytest.mark.parametrize("family", DRAWN)
 def test_a_draw_depends_on_its_number_alone(family: str) -> None:
     drawn = generate(family, 3, 9, 0)
     assert generate(family, 3, 4, 0) == drawn[:4]
@@ -26,7 +32,7 @@ def test_a_draw_depends_on_its_number_alone(family: str) -> None:
     assert len({s.start_rad for s in [drawn[0], *others]}) == 4
 
 
-@pytest.mark.parametrize("family", FAMILIES)
+@pytest.mark.parametrize("family", DRAWN)
 def test_a_draw_is_a_problem_of_its_family(family: str) -> None:
     for scenario in generate(family, 4, 20, 1):
         assert scenario.family == family
@@ -49,7 +55,7 @@ def hit_while_observed(scenario: Scenario) -> bool:
     return closest <= 0
 
 
-@pytest.mark.parametrize("family", FAMILIES)
+@pytest.mark.parametrize("family", DRAWN)
 def test_nothing_but_a_hit_start_is_rejected(family: str) -> None:
     drawn, rejected = generate(family, 6, 40, 0), 0
     for first, kept in zip(generate(f"{family}[redraw=false]", 6, 40, 0), drawn, strict=True):
@@ -105,3 +111,30 @@ def test_unknown_families_and_settings_are_refused(spec: str, message: str) -> N
         generate(spec, 1, 1, 0)
     assert message in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def test_hard_scenarios_are_the_listed_ones_whatever_the_seed() -> None:
+    with LIST.open(encoding="utf-8", newline="") as file:
+        listed = list(csv.DictReader(file))
+    for n in (3, 6, 10, 15):
+        rows = [row for row in listed if int(row["n_obstacles"]) == n]
+        drawn = generate("hard", n, len(rows), 0)
+        assert len(rows) == 20
+        assert [scenario.content_hash for scenario in drawn] == [row["scenario_hash"] for row in rows]
+        assert generate("hard", n, 3, 77) == drawn[:3]
+        assert {scenario.family for scenario in drawn} == {"hard"}
+        assert len({scenario.id for scenario in drawn}) == 20
+        assert min(scenario.seed for scenario in drawn) >= 1000  # reported seeds are not looked at
+
+
+@pytest.mark.parametrize(
+    ("asked", "line"),
+    [
+        (("hard", 4, 1, 0), "hard: found 4 obstacles, allowed 3, 6, 10, 15"),
+        (("hard", 3, 21, 0), "hard: found 21 trials, allowed the 20 listed with 3 obstacles"),
+        (("hard", 3, 1, 0, ContinuumArm(radius_m=0.01)), "hard: found another arm"),
+    ],
+)
+def test_what_is_not_listed_is_one_line(asked: tuple, line: str) -> None:
+    with pytest.raises(ScenarioError, match=line):
+        generate(*asked)

@@ -241,7 +241,7 @@ def test_a_file_that_is_not_there(tmp_path: Path) -> None:
 
 def test_a_folder(tmp_path: Path) -> None:
     (tmp_path / "folder.json").mkdir()
-    assert "directory" in the_error(tmp_path / "folder.json")
+    assert "found a folder" in the_error(tmp_path / "folder.json")
 
 
 @pytest.mark.parametrize("name", ["scenarios.toml", "scenarios", "scenarios.yaml.gz"])

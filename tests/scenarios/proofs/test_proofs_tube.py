@@ -40,7 +40,7 @@ def compare(scenario: Scenario, per_radius: int, spread: float) -> tuple[int, in
     return dropped, odd
 
 
-@settings(max_examples=8)
+@settings(max_examples=4)
 @given(seeds)
 def test_the_tube_among_spheres_is_its_twins(seed: int) -> None:
     rng = np.random.default_rng(seed)

@@ -219,7 +219,7 @@ def test_a_real_run_from_the_command_line(tmp_path) -> None:
     assert out.splitlines()[-3:] == ["run/table.md", "run/table.csv", "run/trials.csv"]
     names = {file.name for file in (tmp_path / "run").iterdir()}
     derived = {"trials.csv", "table.csv", "table.md", "scenarios.jsonl", "trajectories.csv"}
-    assert names == derived | {"run.db", "manifest.json"}
+    assert names == derived | {"run.db", "manifest.json", ".finished.json"}
     assert load_scenarios(tmp_path / "run" / "scenarios.jsonl") == generate("orbit", 0, 1, 7) + generate(
         "orbit", 1, 1, 7
     )

@@ -10,9 +10,9 @@ from planners.search.certificate import _kernels as certificate
 from scenarios.kernels.clearance import arc_clearances
 from scenarios.kernels.kinematics import section_arcs
 
-from .court import COURT
+from .court import COURT, UNLIMITED
 
-njit: Any = numba.njit(error_model="numpy")
+njit: Any = numba.njit(error_model="numpy", _nrt=True)  # even where the caller has no arrays made
 own_is_clear, own_is_motion_free = certificate.is_clear, certificate.is_motion_free
 own_nearest = field.nearest_on_body
 
@@ -34,7 +34,7 @@ def is_code_free(code, n, table, centers, reach, memo, arcs):
 @njit
 def is_motion_free(q0, t0, q1, t1, change, section_length, arm_radius, world, stack):
     with numba.objmode(free=types.boolean):
-        free = COURT.is_motion_free(q0, t0, q1, t1, world, unlimited=True)
+        free = COURT.is_motion_free(q0, t0, q1, t1, world, rates=UNLIMITED)
     own = own_is_motion_free(q0, t0, q1, t1, change, section_length, arm_radius, world, stack)
     with numba.objmode():
         COURT.compare(own, free)
@@ -57,7 +57,7 @@ def is_clear(q0, t0, change, t1, margin, section_length, arm_radius, world, stac
 @njit
 def motion_valid(q0, t0, q1, t1, section_length, arm_radius, max_bend, bend_rate, tip_speed, tolerance, world):
     with numba.objmode(free=types.boolean):
-        free = COURT.is_motion_free(q0, t0, q1, t1, world)
+        free = COURT.is_motion_free(q0, t0, q1, t1, world, rates=(bend_rate, tip_speed))
     return free
 
 

@@ -1,0 +1,76 @@
+"""Scenarios that tell planners apart: solved by somebody, and failed by the planners that are named."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterator
+from itertools import islice
+from pathlib import Path
+from typing import NamedTuple
+
+from scenarios import Scenario, save_scenarios
+from scenarios.proofs import prove
+from suite.experiment.experiment import make_experiment
+from suite.runner import run_experiment
+from suite.store.run_folder import read_trials
+
+FIRST_BATCH = 100
+MOST_TRIED = 100_000
+BOUND = "clairvoyant[restarts=2]"
+"""Who is to solve them: most of what this fails nobody can solve, and to find that out takes ten times as long."""
+
+
+class Hard(NamedTuple):
+    """A scenario that was kept."""
+
+    scenario: Scenario
+    solved_by: str
+    """Who solved it, executable."""
+
+
+class Batch(NamedTuple):
+    """What came of some scenarios."""
+
+    kept: list[Hard]
+    tried: int
+    """Scenarios tried in this batch."""
+
+
+def keep_hard(drawn: Iterator[Scenario], planners: tuple[str, ...], wanted: int, workers: int) -> Iterator[Batch]:
+    """Try scenarios, batch by batch, until ``wanted`` are possible and failed by all of ``planners``, executable.
+
+    What all of them fail is given to ``BOUND``, unless it is proven impossible at once (docs/possible.md).
+
+    Args:
+        drawn: Scenarios, in the order in which they are to be kept.
+        planners: Specs of those that are to fail.
+        wanted: How many to keep; the iteration ends there, or with ``drawn``.
+        workers: Number of worker processes.
+    """
+    kept = tried = 0
+    while kept < wanted:
+        share = max(kept, 1) / tried if tried else 1.0
+        scenarios = list(islice(drawn, max(FIRST_BATCH, int(1.1 * (wanted - kept) / share) if tried else FIRST_BATCH)))
+        if not scenarios:
+            return
+        failed = _failed(scenarios, planners, workers)
+        hopeful = [scenario for scenario in failed if prove(scenario, "base").executable.outcome != "impossible"]
+        unsolved = {scenario.id for scenario in _failed(hopeful, (BOUND,), workers)}
+        found = [Hard(scenario, BOUND) for scenario in hopeful if scenario.id not in unsolved][: wanted - kept]
+        kept, tried = kept + len(found), tried + len(scenarios)
+        yield Batch(found, len(scenarios))
+
+
+def _failed(scenarios: list[Scenario], planners: tuple[str, ...], workers: int) -> list[Scenario]:
+    """Those of the scenarios in which none of the planners succeeds."""
+    if not scenarios:
+        return []
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "scenarios.jsonl"
+        save_scenarios(file, scenarios)
+        experiment = make_experiment(planners=planners, scenario_files=(str(file),))
+        run_experiment(experiment, Path(folder) / "run", workers=workers, quiet=True)
+        trials = read_trials(Path(folder) / "run", ("scenario_id", "success_executable"))
+    assert trials is not None
+    solved = set(trials.loc[trials["success_executable"].fillna(False).astype(bool), "scenario_id"])
+    return [scenario for scenario in scenarios if scenario.id not in solved]
