@@ -2,6 +2,7 @@
 
 import re
 import shlex
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -135,3 +136,11 @@ def test_numbers_of_the_guide_come_from_commands() -> None:
     for page in PAGES:
         if "notes" not in page.parts:
             assert "script of ours" not in page.read_text(encoding="utf-8"), page
+
+
+def test_the_version_is_the_same_everywhere() -> None:
+    version = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
+    cited = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    assert cited["version"] == version
+    assert f"## [{version}] - {cited['date-released']}\n" in changes

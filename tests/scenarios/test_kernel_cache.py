@@ -82,7 +82,6 @@ def test_libraries_that_are_installed_beside_the_project_are_not_followed(house:
 def test_kernel_files_import_in_the_one_way_that_the_hash_follows() -> None:
     # ``import package.module`` would go unseen.
     files = [*jit._ROOT.glob("scenarios/kernels/*.py"), *jit._ROOT.glob("*/**/_kernels.py")]
-    files = [file for file in files if "from scenarios.kernels.jit import" in file.read_text(encoding="utf-8")]
     assert len(files) > 5
     for file in files:
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
