@@ -50,7 +50,8 @@ def keep_hard(drawn: Iterator[Scenario], planners: tuple[str, ...], wanted: int,
     kept = tried = 0
     while kept < wanted:
         share = max(kept, 1) / tried if tried else 1.0
-        scenarios = list(islice(drawn, max(FIRST_BATCH, int(1.1 * (wanted - kept) / share) if tried else FIRST_BATCH)))
+        more = int(1.1 * (wanted - kept) / share) if tried else 0
+        scenarios = list(islice(drawn, max(FIRST_BATCH, more)))
         if not scenarios:
             return
         failed = _failed(scenarios, planners, workers)

@@ -12,7 +12,7 @@ from planners.strrt.region import _kernels as region
 from planners.strrt.trees import _kernels as trees
 
 
-@pytest.mark.parametrize(("planner", "obstacles"), [("t3", (1, 5)), ("h", (1, 5)), ("pf", (1,)), ("temporal-ct", (1,))])
+@pytest.mark.parametrize(("planner", "obstacles"), [("t3", (1, 5)), ("h", (1,)), ("pf", (1,)), ("temporal-ct", (1,))])
 def test_rows_are_those_of_a_trial_that_asks_the_arbiter(planner: str, obstacles: tuple[int, ...]) -> None:
     found = both_ways(planner, 1, 1000, obstacles, interpreted=True)
     assert found.is_kept, str(found)

@@ -127,6 +127,8 @@ def _compile(function: Callable[..., Any], **options: bool) -> Callable[..., Any
     config.CACHE_DIR = str(cache_folder() / "kernels" / source_hash(Path(function.__code__.co_filename)))
     njit: Any = numba.njit  # its types do not know ``_nrt``
     compiled = njit(cache=True, fastmath=False, error_model="numpy", **options)(function)
+    if config.DISABLE_JIT:  # a way of Numba's to look at what a kernel does: it is the function itself
+        return function
     if Path(compiled._cache.cache_path).is_relative_to(config.CACHE_DIR):
         compiled._cache._cache_file.__class__ = _CheckedFile
     else:  # beside the source, where Numba goes next, a kernel would be found whatever it calls

@@ -53,7 +53,7 @@ def test_the_tube_among_spheres_is_its_twins(seed: int) -> None:
 def test_the_tube_among_shapes_is_nearly_its_twins() -> None:
     rng = np.random.default_rng(5)
     dropped = odd = 0
-    for _ in range(6):
+    for _ in range(3):
         solved = just_missed(rng, random_arm(rng), 4, shapes=True)
         if solved:
             more = compare(solved.scenario, 8, 2.0)
