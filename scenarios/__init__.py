@@ -3,7 +3,8 @@
 from scenarios.arm import ContinuumArm
 from scenarios.collision import are_states_valid, clearance, clearances, is_motion_valid, is_state_valid
 from scenarios.errors import FileError, ScenarioError, UserError
-from scenarios.families import FAMILIES, drawn, generate, start_is_free
+from scenarios.families import FAMILIES, drawn, generate
+from scenarios.families.drawing import start_is_free
 from scenarios.files import load_scenarios, save_scenarios
 from scenarios.motion import Line, Orbit, Still, Track, Wander, Wave
 from scenarios.obstacle import Obstacle

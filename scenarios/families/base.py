@@ -1,13 +1,15 @@
 """A family of scenarios, and what families share: drawing an arm's start and goal, and directions."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict
 
 from scenarios.arm import ContinuumArm, FloatArray
 from scenarios.obstacle import Obstacle
+from scenarios.scenario import Scenario
 
 CUBE_M = 0.01
 """Edge of the paper's workspace cubes; goals stand at their centres."""
@@ -22,15 +24,24 @@ class Problem(NamedTuple):
 
 
 class Family(BaseModel, ABC):
-    """A way to draw problems; its fields are the ranges drawn from."""
+    """Where scenarios come from; its fields are its settings."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    redraw: bool = Field(default=True, description="whether a draw whose start is hit is drawn anew")
-
     @abstractmethod
-    def draw(self, rng: np.random.Generator, arm: ContinuumArm, n_obstacles: int) -> Problem:
-        """Draw start, goal and obstacles."""
+    def scenarios(self, name: str, n_obstacles: int, trials: int, seed: int, arm: ContinuumArm) -> Iterator[Scenario]:
+        """Scenarios number 0 to ``trials`` - 1, one after the other.
+
+        Args:
+            name: The family's own, for their ids.
+            n_obstacles: Number of obstacles in each.
+            trials: How many.
+            seed: Seed of the experiment.
+            arm: The arm.
+
+        Raises:
+            ScenarioError: There are none such.
+        """
 
 
 def random_configuration(rng: np.random.Generator, arm: ContinuumArm) -> FloatArray:

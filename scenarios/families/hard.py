@@ -6,12 +6,14 @@
 import csv
 import functools
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
-import numpy as np
-
 from scenarios.arm import ContinuumArm
-from scenarios.families.base import Family, Problem
+from scenarios.errors import ScenarioError
+from scenarios.families.base import Family
+from scenarios.families.orbit import OrbitFamily
+from scenarios.scenario import Scenario
 
 LIST = Path(__file__).with_name("hard.csv")
 
@@ -21,9 +23,21 @@ _ID = re.compile(r"orbit-n(\d+)-s(\d+)-(\d+)")
 class HardFamily(Family):
     """A list has no ranges."""
 
-    def draw(self, rng: np.random.Generator, arm: ContinuumArm, n_obstacles: int) -> Problem:
-        """Refuse: which scenarios are hard has been found out, by trying."""
-        raise ValueError("found nothing to draw from, allowed what is listed")
+    def scenarios(self, name: str, n_obstacles: int, trials: int, seed: int, arm: ContinuumArm) -> Iterator[Scenario]:
+        """The first ``trials`` of the list, whatever the seed of the experiment is; see ``Family.scenarios``."""
+        known = origins()
+        if arm != ContinuumArm():
+            raise ScenarioError(f"{name}: found another arm, allowed the default one, with which the list was made")
+        if n_obstacles not in known:
+            raise ScenarioError(f"{name}: found {n_obstacles} obstacles, allowed {', '.join(map(str, known))}")
+        listed = known[n_obstacles]
+        if trials > len(listed):
+            found = f"found {trials} trials, allowed the {len(listed)} listed with {n_obstacles} obstacles"
+            raise ScenarioError(f"{name}: {found}")
+        for its_seed, number in listed[:trials]:
+            scenario = OrbitFamily().scenario("orbit", n_obstacles, number, its_seed, arm)
+            named = {"id": scenario.id.replace("orbit", name), "family": name}
+            yield scenario.model_copy(update=named | {"parameters": {"n_obstacles": n_obstacles}})
 
 
 @functools.cache

@@ -4,12 +4,13 @@ import numpy as np
 from pydantic import Field
 
 from scenarios.arm import ContinuumArm
-from scenarios.families.base import Family, Problem, draw_problem, random_direction, random_radius
+from scenarios.families.base import Problem, draw_problem, random_direction, random_radius
+from scenarios.families.drawing import DrawnFamily
 from scenarios.motion import Orbit
 from scenarios.obstacle import Obstacle
 
 
-class OrbitFamily(Family):
+class OrbitFamily(DrawnFamily):
     """Ranges from which a scenario of the family is drawn; the defaults are the paper's."""
 
     min_distance_m: float = Field(default=0.15, ge=0, le=2, description="least distance from start to goal tip")

@@ -14,6 +14,8 @@ from suite.auditor.engine import Contacts, FloatArray
 
 SAMPLE_S = 0.01
 _CAPSULES = 24  # per section: at most 0.1 mm between arc and chord
+# Depths come from here: FCL 0.7's signed distance never answers for a sphere whose centre is on a capsule's axis.
+_CONTACTS = fcl.CollisionRequest(num_max_contacts=1000, enable_contact=True)
 
 
 def sampled_contacts(scenario: Scenario, times_s: FloatArray, states: FloatArray, end_s: float) -> Contacts:
@@ -56,9 +58,9 @@ class _Bodies:
         self._managers = _manager(self._capsules), _manager(self._shapes)
 
     def clearance(self, q: FloatArray, centers: list[FloatArray]) -> float:
-        """Signed distance [m] between the arm at ``q`` (dof,) and obstacles at ``centers`` (3,) [m]; inf without.
+        """Distance [m] between the arm at ``q`` (dof,) and obstacles at ``centers`` (3,) [m]; inf without.
 
-        Of several contacts it is the depth of the one that FCL meets first.
+        In contact the depth of the deepest, negative.
         """
         if not centers:
             return math.inf
@@ -70,19 +72,34 @@ class _Bodies:
             shape.setTranslation(center)
         for manager in self._managers:
             manager.update()
-        data = fcl.DistanceData(request=fcl.DistanceRequest(enable_signed_distance=True))
+        data = fcl.DistanceData()
         self._managers[0].distance(self._managers[1], data, fcl.defaultDistanceCallback)
-        return float(data.result.min_distance)
+        if data.result.min_distance > 0.0:
+            return float(data.result.min_distance)
+        met = fcl.CollisionData(request=_CONTACTS)
+        self._managers[0].collide(self._managers[1], met, fcl.defaultCollisionCallback)
+        return -_depth(met.result)
 
     def nearest(self) -> tuple[int, int]:
         """Which obstacle and section have the smallest distance, pair by pair, as they were last placed."""
-        request = fcl.DistanceRequest(enable_signed_distance=True)
-        distances = [
-            [fcl.distance(capsule, shape, request, fcl.DistanceResult()) for capsule in self._capsules]
-            for shape in self._shapes
-        ]
+        distances = [[_gap(capsule, shape) for capsule in self._capsules] for shape in self._shapes]
         obstacle, capsule = np.unravel_index(np.argmin(distances), np.shape(distances))
         return int(obstacle), int(capsule) // _CAPSULES
+
+
+def _gap(one: fcl.CollisionObject, other: fcl.CollisionObject) -> float:
+    """Distance of two bodies [m], negative by the depth of their contact."""
+    distance = float(fcl.distance(one, other))
+    if distance > 0.0:
+        return distance
+    met = fcl.CollisionResult()
+    fcl.collide(one, other, _CONTACTS, met)
+    return -_depth(met)
+
+
+def _depth(met: fcl.CollisionResult) -> float:
+    """Depth of the deepest contact [m]; 0 where there is none."""
+    return max((float(contact.penetration_depth) for contact in met.contacts), default=0.0)
 
 
 def _manager(objects: list[fcl.CollisionObject]) -> fcl.DynamicAABBTreeCollisionManager:

@@ -48,6 +48,7 @@ class Campaign:
 
     def __init__(self, folder: Path, trials: int) -> None:
         self.folder, self.trials = folder, trials
+        self.started_s = time.monotonic()
         self.faults, self.wrong = Counter[str](), list[str]()
         self.rng = random.Random(0)
         self.environment = os.environ | {"SUITE_CACHE_DIR": str(folder / "cache")}
@@ -72,9 +73,9 @@ class Campaign:
         code = process.wait(900)
         said = (self.folder / "said").read_bytes()
         if b"Traceback" in said:
-            self.wrong.append(f"{what}: a traceback: {said[-500:]!r}")
+            self.blame(f"{what}: a traceback: {said[-500:]!r}")
         if code not in allowed:
-            self.wrong.append(f"{what}: exit {code}: {said[-300:]!r}")
+            self.blame(f"{what}: exit {code}: {said[-300:]!r}")
 
     def run(self, name: str, planners: str = "pf") -> None:
         self.ended(self.start(self.asked(name, planners)), (0,), f"run {name}")
@@ -85,17 +86,28 @@ class Campaign:
             chosen = ", ".join(f'"{column}"' for column in NAMES)
             found = db.execute(f"SELECT key, executed, {chosen} FROM trials WHERE planner = 'pf'").fetchall()
         if len({key for key, *_ in found}) < len(found):
-            self.wrong.append(f"{name}: rows doubled")
+            self.blame(f"{name}: rows doubled")
         return {key: tuple(row) for key, *row in found}
 
     def compare(self, name: str) -> None:
         found = self.rows(name)
         for what, keys in (("lost", self.whole.keys() - found.keys()), ("new", found.keys() - self.whole.keys())):
             if keys:
-                self.wrong.append(f"{name}: {len(keys)} trials {what}")
+                self.blame(f"{name}: {len(keys)} trials {what}")
         differ = sum(found[key] != self.whole[key] for key in found.keys() & self.whole.keys())
         if differ:
-            self.wrong.append(f"{name}: {differ} rows differ")
+            self.blame(f"{name}: {differ} rows differ")
+        self.say(name)
+
+    def blame(self, what: str) -> None:
+        """Keep what went wrong, and say it at once."""
+        self.wrong.append(what)
+        print(what, file=sys.stderr, flush=True)
+
+    def say(self, name: str) -> None:
+        """How far this is, after every run that was compared: it takes a quarter of an hour."""
+        so_far = f"{self.faults.total()} faults, {len(self.wrong)} wrong"
+        print(f"{time.monotonic() - self.started_s:5.0f} s  {name}: {so_far} so far", file=sys.stderr, flush=True)
 
     def workers_killed(self, faults: int) -> None:
         """Workers killed from outside while a run goes on, again and again."""
@@ -145,10 +157,11 @@ class Campaign:
         self.trials = all_trials
         found = self.rows("hostile")
         if len(found) != trials or any(self.whole[key] != row for key, row in found.items()):
-            self.wrong.append("hostile: rows of pf lost or different")
+            self.blame("hostile: rows of pf lost or different")
         with sqlite3.connect(self.folder / "hostile" / "run.db") as db:
             for planner, count in db.execute("SELECT planner, count(*) FROM trials WHERE planner <> 'pf' GROUP BY 1"):
                 self.faults[f"planner: {planner}"] += count
+        self.say("hostile")
 
     def suite_stopped(self, faults: int) -> None:
         """The whole command stopped at any time, and given again."""
@@ -161,7 +174,7 @@ class Campaign:
                 self._stop(process, kind, self.rng.uniform(0.5, 6.0))
                 self.faults[kind] += 1
                 for pid in workers_of(process.pid):
-                    self.wrong.append(f"{name}: worker {pid} outlives the suite after {kind}")
+                    self.blame(f"{name}: worker {pid} outlives the suite after {kind}")
             self.run(name)
             self.compare(name)
 
@@ -239,7 +252,6 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m tests.faults")
     parser.add_argument("--faults", type=int, default=300, help="about so many")
     given = parser.parse_args()
-    started_s = time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
         campaign = Campaign(Path(folder), trials=max(10, min(200, given.faults)))
         campaign.workers_killed(given.faults // 3)
@@ -247,7 +259,7 @@ def main() -> int:
         campaign.suite_stopped(given.faults // 10)
         campaign.files_broken(max(1, given.faults // 60))
     kinds = campaign.faults
-    print(f"{kinds.total()} faults of {len(kinds)} kinds in {time.monotonic() - started_s:.0f} s")
+    print(f"{kinds.total()} faults of {len(kinds)} kinds in {time.monotonic() - campaign.started_s:.0f} s")
     print(*(f"{count:6} {kind}" for kind, count in sorted(kinds.items())), sep="\n")
     print(f"{len(campaign.wrong)} trials lost, doubled or different, tracebacks, runs ended")
     print(*campaign.wrong, sep="\n")

@@ -14,10 +14,10 @@ from scenarios import (
     ScenarioError,
     SpecError,
     Track,
-    families,
     generate,
     start_is_free,
 )
+from scenarios.families import drawing
 from scenarios.families.hard import LIST
 
 DRAWN = [family for family in FAMILIES if family != "hard"]
@@ -92,7 +92,7 @@ def test_impossible_requests_are_refused_in_one_line(arguments: tuple, message: 
 
 
 def test_a_family_that_always_hits_the_start_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(families, "start_is_free", lambda _: False)
+    monkeypatch.setattr(drawing, "start_is_free", lambda _: False)
     with pytest.raises(ScenarioError, match="every one of 1000 draws hits the start"):
         generate("orbit", 0, 1, 0)
 
@@ -104,6 +104,7 @@ def test_a_family_that_always_hits_the_start_is_given_up(monkeypatch: pytest.Mon
         ("orbit[speed=1]", "found setting 'speed', allowed redraw, min_distance_m"),
         ("orbit[max_speed_m_s=fast]", "max_speed_m_s"),
         ("orbit[max_speed_m_s=-1]", "max_speed_m_s"),
+        ("hard[redraw=false]", "hard: found setting 'redraw', allowed none"),
     ],
 )
 def test_unknown_families_and_settings_are_refused(spec: str, message: str) -> None:

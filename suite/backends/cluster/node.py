@@ -138,19 +138,21 @@ def results_in(answer: object, count: int) -> dict[int, TrialResult]:
     if not isinstance(answer, bytes):
         raise GarbledError(f"found {type(answer).__name__} for bytes")
     results: dict[int, TrialResult] = {}
-    while answer:
-        place, rest = int.from_bytes(answer[:LENGTH_BYTES]), answer[LENGTH_BYTES:]
-        length = frame_length(rest)
+    begin = 0
+    while begin < len(answer):
+        place = int.from_bytes(answer[begin : begin + LENGTH_BYTES])
+        begin += LENGTH_BYTES
+        length = frame_length(answer[begin : begin + LENGTH_BYTES])
         if length is None:
             raise GarbledError("found bytes that are no answer")
-        match unpacked(place, rest[:length]):
+        match unpacked(place, answer[begin : begin + length]):
             case TrialResult() as result if place < count:
                 results[place] = result
             case Unreadable(message):
                 raise SuiteError(message)
             case _:
                 raise GarbledError("found something else than a result")
-        answer = rest[length:]
+        begin += length
     return results
 
 

@@ -47,8 +47,8 @@ ARM = ContinuumArm(n_sections=2)
 
 
 def passing(height_m: float, at_s: float) -> Obstacle:
-    """Crosses the unbent arm at a height, a little aside: FCL never answers for a sphere right on a capsule's axis."""
-    times, away = (at_s - 0.5, at_s + 0.5), ((0.3, 3e-3, height_m), (-0.3, 3e-3, height_m))
+    """Crosses the unbent arm's axis at a height."""
+    times, away = (at_s - 0.5, at_s + 0.5), ((0.3, 0.0, height_m), (-0.3, 0.0, height_m))
     return Obstacle(radius_m=0.02, motion=Track(times_s=times, positions_m=away))
 
 
