@@ -148,6 +148,7 @@ def run(
     preset: str | None = None,
     processes: int = 0,
     hang_limit_s: float = 300.0,
+    memory_limit_mb: float | None = None,
     fresh: bool = False,
     keep_stale: bool = False,
     **conditions: Any,
@@ -162,6 +163,7 @@ def run(
         processes: Worker processes; 0 runs every trial in this process, where a planner that hangs or crashes
             can't be stopped.
         hang_limit_s: In worker processes a trial that takes longer is killed [s].
+        memory_limit_mb: In worker processes a trial that takes so much more than its process had is killed [MB].
         fresh: Start over what the folder holds.
         keep_stale: Use rows that other code has made as they are.
         **conditions: Fields of ``suite.experiment.experiment.Experiment``: ``family``, ``arm``, ``obstacles``,
@@ -180,7 +182,7 @@ def run(
         experiment,
         folder,
         workers=processes,
-        limits=Limits(hang_limit_s),
+        limits=Limits(hang_limit_s, memory_limit_mb),
         fresh=fresh,
         keep_stale=keep_stale,
     )

@@ -55,6 +55,23 @@ def test_a_run_is_read_from_python(small_run) -> None:
     assert suite.load(small_run.folder).trials.equals(small_run.trials)
 
 
+def test_limits_hold_in_worker_processes(tmp_path) -> None:
+    file = tmp_path / "hog.py"
+    file.write_text(
+        "import time, numpy as np\n"
+        "from planners import ArmPlanner, TimedPath\n"
+        "class Hog(ArmPlanner):\n"
+        "    \"\"\"Fills a gigabyte.\"\"\"\n"
+        "    def search(self, q, now_s, stop):\n"
+        "        self.held = np.ones(2**27)\n"
+        "        time.sleep(60)\n"
+    )
+    made = suite.run(
+        f"{file}:Hog", obstacles=(0,), trials=1, seed=1001, out=tmp_path / "run", processes=1, memory_limit_mb=200.0
+    )
+    assert list(made.trials["outcome"]) == ["planner_memory"]
+
+
 def test_a_trajectory_of_a_run_is_judged_as_in_its_row(small_run) -> None:
     for row in small_run.trials.to_dict("records"):
         scenario = small_run.scenario(row["scenario_id"])
