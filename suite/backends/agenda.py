@@ -14,7 +14,8 @@ from suite.trial.task import TrialResult, TrialTask, failed_trial
 HOUSE = ""
 """Owner of the processes in which the house's own planners run."""
 TRIES = 3
-"""So often a trial or a part of the warm-up, in which its process died, is begun before that counts."""
+"""So often a trial or a part of the warm-up, in which its process died, is begun before that counts; a part one time
+after the other, with no trial that needs it finished in between."""
 LOOK_AHEAD = 5_000
 """So many tasks may wait for warm-ups, or for processes of their own; each takes some 8 KiB of memory."""
 
@@ -39,6 +40,8 @@ class Agenda:
         self._not_begun = deque(job.parts)
         self._begun: dict[str, Part] = {}
         self._deaths: dict[str, int] = {}
+        self._deaths_in_warm_up: dict[str | None, dict[str, int]] = {}
+        """By planner and part."""
         self._failures: dict[str | None, Failure] = {}
         self._results: list[tuple[TrialTask, TrialResult]] = []
         self.n_open = len(tasks)
@@ -108,8 +111,9 @@ class Agenda:
 
     def died(self, part: Part, failure: Failure) -> None:
         """Take note that the process died that was at ``part``: somebody may have killed it, so it is begun again."""
-        self._deaths[part.name] = self._deaths.get(part.name, 0) + 1
-        if self._deaths[part.name] >= TRIES:
+        deaths = self._deaths_in_warm_up.setdefault(part.planner, {})
+        deaths[part.name] = deaths.get(part.name, 0) + 1
+        if deaths[part.name] >= TRIES:
             self.failed(part, failure)
         elif part.name in self._begun:
             del self._begun[part.name]
@@ -136,6 +140,8 @@ class Agenda:
 
     def finish(self, task: TrialTask, result: TrialResult) -> None:
         """Take the result of a task that was handed out."""
+        for planner in (None, task.spec.label):  # their parts are warm somewhere
+            self._deaths_in_warm_up.pop(planner, None)
         self.n_open -= 1
         self._results.append((task, result))
 

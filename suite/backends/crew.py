@@ -20,7 +20,7 @@ from suite.trial.lineup import Tasks
 from suite.trial.task import RowError, TrialResult, TrialTask, checked_result, failed_trial
 
 STARTS = 3
-"""So many workers that die one after the other while they start cost a trial."""
+"""So many workers that die one after the other while they start, with none that works, cost a trial."""
 TELL_EVERY_S = 1.0
 PRINTED = "\n--- printed in the trial ---\n"
 """Between a traceback and what a planner has printed."""
@@ -97,7 +97,9 @@ class Crew:
                     self._warm_up(worker, cold[0])
                 else:
                     self._run(worker, worker.task)
-        while len(self._crew) < min(self._n_workers, self._agenda.n_open):
+        # While others work, each of their trials pays for a few starts more: none is made in an endless haste.
+        may_start = self._failed_starts < STARTS or not self._crew
+        while may_start and len(self._crew) < min(self._n_workers, self._agenda.n_open):
             self._crew.append(_Worker(WorkerProcess()))
 
     def _warm_up(self, worker: _Worker, part: Part) -> None:
@@ -141,7 +143,7 @@ class Crew:
             self._failed_starts = 0
         elif not is_idle:  # it died or was killed while it started
             self._failed_starts += 1
-            if self._failed_starts == STARTS:
+            if self._failed_starts >= STARTS and not self._crew:
                 self._failed_starts = 0
                 failure = _failure(answer, worker.process.log())
                 message = f"no worker process could start: {failure.message}"
@@ -152,6 +154,7 @@ class Crew:
         if isinstance(answer, TrialResult):
             try:
                 self._agenda.finish(task, with_log(checked_result(task, answer), log))
+                self._failed_starts = 0
                 return
             except RowError as error:
                 answer = Failure("planner_error", str(error))

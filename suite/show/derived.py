@@ -16,7 +16,7 @@ from suite.compare.conditions import telling_apart
 from suite.compare.tables import SUMMED_UP, summarize
 from suite.files import replacing, write_text
 from suite.show.text import as_csv, as_markdown_page
-from suite.store.frames import FLOAT_FORMAT, columns_frame, joined, trials_csv
+from suite.store.frames import FLOAT_FORMAT, columns_frame, compact, trials_csv
 from suite.store.journal import Executed, Journal
 from suite.trial.columns import COLUMN_NAMES
 from suite.trial.task import Code
@@ -36,7 +36,7 @@ def write_derived(
     Returns:
         The summary that stands in ``table.csv``.
     """
-    trials = joined(map(columns_frame, journal.columns(SUMMED_UP)), SUMMED_UP)
+    trials = compact(journal.columns(SUMMED_UP), SUMMED_UP)
     summary = summarize(trials, list(present), present)
     with replacing(folder / "trials.csv") as handle:
         handle.write(",".join(COLUMN_NAMES) + "\n")

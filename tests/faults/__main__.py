@@ -94,9 +94,10 @@ class Campaign:
         for what, keys in (("lost", self.whole.keys() - found.keys()), ("new", found.keys() - self.whole.keys())):
             if keys:
                 self.blame(f"{name}: {len(keys)} trials {what}")
-        differ = sum(found[key] != self.whole[key] for key in found.keys() & self.whole.keys())
-        if differ:
-            self.blame(f"{name}: {differ} rows differ")
+        for key in found.keys() & self.whole.keys():
+            unlike = [pair for pair in zip(found[key], self.whole[key], strict=True) if pair[0] != pair[1]]
+            if unlike:
+                self.blame(f"{name}: a row differs: {unlike[1:] or 'in what was executed'}"[:500])
         self.say(name)
 
     def blame(self, what: str) -> None:

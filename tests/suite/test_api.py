@@ -61,7 +61,7 @@ def test_limits_hold_in_worker_processes(tmp_path) -> None:
         "import time, numpy as np\n"
         "from planners import ArmPlanner, TimedPath\n"
         "class Hog(ArmPlanner):\n"
-        "    \"\"\"Fills a gigabyte.\"\"\"\n"
+        '    """Fills a gigabyte."""\n'
         "    def search(self, q, now_s, stop):\n"
         "        self.held = np.ones(2**27)\n"
         "        time.sleep(60)\n"

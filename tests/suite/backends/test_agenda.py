@@ -7,6 +7,7 @@ from planners.failure import Failure
 from suite.backends import agenda as agendas
 from suite.backends.agenda import TRIES, Agenda
 from suite.backends.job import Job
+from suite.trial.task import failed_trial
 
 FAILURE = Failure("planner_error", "in warm-up: it failed")
 
@@ -41,6 +42,19 @@ def test_a_part_whose_process_dies_is_begun_again_a_few_times() -> None:
     assert agenda.next_part() is None
     assert labels(agenda) == []
     assert agenda.n_open == 0
+
+
+def test_deaths_in_a_warm_up_do_not_add_up_while_trials_of_its_planner_finish() -> None:
+    agenda = Agenda(Job(behave, 60.0, make_parts({"a": ""})), make_tasks(["a"], trials=2 * TRIES))
+    part = agenda.next_part()
+    assert part is not None
+    agenda.is_warm(part)
+    for _ in range(2 * TRIES):
+        agenda.died(part, FAILURE)
+        task = agenda.next_task()
+        assert task is not None
+        agenda.finish(task, failed_trial(task, Failure("planner_error", "its own"), 0.0))
+    assert {result.row["message"] for _, result in agenda.results()} == {"its own"}
 
 
 def test_tasks_keep_their_order() -> None:

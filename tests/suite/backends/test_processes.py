@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 
 import pytest
-from fakes import behave, heavy_imports, make_parts, make_tasks, place_of, warm, warm_after_a_death
+from fakes import behave, behave_slowly, heavy_imports, make_parts, make_tasks, place_of, warm, warm_after_a_death
 
 from planners.failure import Failure
 from suite.backends import agenda, process
@@ -143,6 +143,16 @@ def test_workers_that_never_start_cost_trials_and_end(tmp_path: Path, monkeypatc
     rows = rows_of(["a", "b"], workers=1)
     assert outcomes_of(rows)["a"] == ("worker_lost", "no worker process could start: the process died: exit code 7")
     assert outcomes_of(rows)["b"][1] is None
+
+
+def test_workers_that_never_start_cost_no_trial_beside_one_that_works(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with Processes(2) as processes:  # the first is on its way
+        monkeypatch.setattr(process.sys, "executable", dies_at_first(tmp_path, 1000))
+        rows = [result.row for _, result in processes.run(Job(behave_slowly, 60.0), make_tasks(["a"], trials=40))]
+    assert 3 < len((tmp_path / "starts").read_text().splitlines()) <= 3 * (40 + 1) + 1
+    assert {row["message"] for row in rows} == {None}
 
 
 def test_what_cannot_be_sent_to_a_worker_is_a_row() -> None:
