@@ -85,7 +85,7 @@ def compact(parts: Iterable[Mapping[str, Sequence[Any]]], names: Sequence[str]) 
     A hundred thousand rows take 15 MB and not 40, beside which whatever is computed from them copies as much again.
     """
     known: dict[str, dict[Any, int]] = {name: {} for name in names if name in _REPEATING}
-    frames = [columns_frame({name: () for name in names})]
+    frames = [columns_frame(dict.fromkeys(names, ()))]
     for columns in parts:
         plain = columns_frame({name: values for name, values in columns.items() if name not in known})
         codes = {
