@@ -141,7 +141,7 @@ class Run:
         return tabulate(rows, titles, tablefmt="html", disable_numparse=True)
 
 
-def run(
+def run(  # noqa: PLR0913  the command line's options
     planners: str | type[ArmPlanner] | Iterable[PlannerLike] = (),
     *,
     out: str | Path | None = None,

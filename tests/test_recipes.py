@@ -1,4 +1,4 @@
-"""Recipes: pages whose commands are run, one after the other, in one folder; fewer trials of those that take minutes."""
+"""Recipes: pages whose commands are run, one after the other, in one folder; fewer trials where they take minutes."""
 
 from pathlib import Path
 

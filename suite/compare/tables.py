@@ -18,7 +18,7 @@ import pandas as pd
 
 from planners import is_bound
 from suite.auditor.verdicts import VERDICTS
-from suite.compare.possible import IMPOSSIBLE, OPEN, YES, possible
+from suite.compare.possible import IMPOSSIBLE, OPEN, YES, numbered, possible
 from suite.compare.statistics import wilson_interval
 from suite.store.frames import TABLE_TYPES
 from suite.trial.columns import OWN, WORLD
@@ -65,12 +65,14 @@ def summarize(
     """
     order = {label: position for position, label in enumerate(planners)}
     rows: list[dict[str, Any]] = []
-    answers = possible(trials)
-    for world, among in trials.groupby(WORLDS, sort=False, dropna=False):
+    numbers = numbered(trials)
+    for world, among in trials.assign(scenario=numbers, possible=possible(trials, numbers)).groupby(
+        WORLDS, sort=False, dropna=False
+    ):
         bounds = among[are_bounds(among)]
         for entrant, group in among.groupby(ENTRANT, sort=False, dropna=False):
             named = dict(zip(WORLDS + ENTRANT, (*world, *entrant), strict=True))
-            counts = answers[group["scenario_hash"].unique()].value_counts()
+            counts = group.loc[~group["scenario"].duplicated(), "possible"].value_counts()
             known = {
                 "possible": counts.get(YES, 0),
                 "open": counts.get(OPEN, 0),
