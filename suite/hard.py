@@ -14,10 +14,11 @@ from suite.experiment.experiment import make_experiment
 from suite.runner import run_experiment
 from suite.store.run_folder import read_trials
 
-FIRST_BATCH = 100
+FIRST_BATCH, LARGEST_BATCH = 100, 200
 MOST_TRIED = 100_000
-BOUND = "clairvoyant[restarts=2]"
-"""Who is to solve them: most of what this fails nobody can solve, and to find that out takes ten times as long."""
+SOLVERS = ("temporal-ct", "clairvoyant[restarts=2]")
+"""Who is to solve them, the quick one first. Most of what both fail nobody can solve, and to find that out takes ten
+times as long."""
 
 
 class Hard(NamedTuple):
@@ -39,7 +40,7 @@ class Batch(NamedTuple):
 def keep_hard(drawn: Iterator[Scenario], planners: tuple[str, ...], wanted: int, workers: int) -> Iterator[Batch]:
     """Try scenarios, batch by batch, until ``wanted`` are possible and failed by all of ``planners``, executable.
 
-    What all of them fail is given to ``BOUND``, unless it is proven impossible at once (docs/possible.md).
+    What is proven impossible at once (docs/possible.md) is given to nobody; what all of them fail to ``SOLVERS``.
 
     Args:
         drawn: Scenarios, in the order in which they are to be kept.
@@ -51,13 +52,18 @@ def keep_hard(drawn: Iterator[Scenario], planners: tuple[str, ...], wanted: int,
     while kept < wanted:
         share = max(kept, 1) / tried if tried else 1.0
         more = int(1.1 * (wanted - kept) / share) if tried else 0
-        scenarios = list(islice(drawn, max(FIRST_BATCH, more)))
+        scenarios = list(islice(drawn, max(FIRST_BATCH, min(more, LARGEST_BATCH))))
         if not scenarios:
             return
-        failed = _failed(scenarios, planners, workers)
-        hopeful = [scenario for scenario in failed if prove(scenario, "base").executable.outcome != "impossible"]
-        unsolved = {scenario.id for scenario in _failed(hopeful, (BOUND,), workers)}
-        found = [Hard(scenario, BOUND) for scenario in hopeful if scenario.id not in unsolved][: wanted - kept]
+        left = [scenario for scenario in scenarios if prove(scenario, "base").executable.outcome != "impossible"]
+        left = _failed(left, planners, workers)
+        solved_by = dict[str, str]()
+        for solver in SOLVERS:
+            unsolved = {scenario.id for scenario in _failed(left, (solver,), workers)}
+            solved_by |= {scenario.id: solver for scenario in left if scenario.id not in unsolved}
+            left = [scenario for scenario in left if scenario.id in unsolved]
+        possible = [Hard(scenario, solved_by[scenario.id]) for scenario in scenarios if scenario.id in solved_by]
+        found = possible[: wanted - kept]
         kept, tried = kept + len(found), tried + len(scenarios)
         yield Batch(found, len(scenarios))
 

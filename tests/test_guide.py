@@ -6,6 +6,7 @@ others in one folder that has what its reader would have: finished runs, a plann
 
 import json
 import os
+import re
 import shlex
 import shutil
 from pathlib import Path
@@ -40,7 +41,7 @@ TETRAHEDRON = ((0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3))
 
 def small(line: str) -> list[str]:
     """Words of a command that asks for as little as it can."""
-    words = shlex.split(line, comments=True)[1:]
+    words = shlex.split(os.path.expandvars(line), comments=True)[1:]
     fewest = {"run": {"--trials": "1", "--obstacles": "1"}, "predictors": {"--trials": "2", "--obstacles": "1"},
               "generate": {"--trials": "1", "--obstacles": "3"}}.get(words[0], {})  # fmt: skip
     if "hard" in words:
@@ -50,7 +51,8 @@ def small(line: str) -> list[str]:
             words[words.index(option) + 1] = value
         elif "--scenarios" not in words:
             words += [option, value]
-    return [*words, "--workers", "1"] if words[0] == "run" else words
+    more = {"run": ["--workers", "1"], "export": ["--overwrite"]}
+    return [*words, *more.get(words[0], [])]
 
 
 def do(line: str) -> None:
@@ -100,7 +102,10 @@ def test_every_command_of_a_page_of_the_guide_runs(page: str, folder: Path, tmp_
     shutil.copytree(folder, tmp_path, symlinks=True, dirs_exist_ok=True)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("BROWSER", "true")  # a command that opens nothing
-    found = commands((ROOT / page).read_text(encoding="utf-8"))
+    text = (ROOT / page).read_text(encoding="utf-8")
+    for name, value in re.findall(r"^    ([A-Z]+)=(\S+)$", text, re.MULTILINE):
+        monkeypatch.setenv(name, value)
+    found = commands(text)
     assert found
     for line in found:
         assert main(small(line)) == 0, line
