@@ -11,7 +11,7 @@ import pandas as pd
 from suite.compare.curves import Curves, Line, Panel, Point, curves
 from suite.errors import SuiteError
 from suite.show.plots.asked import Asked, Drawn
-from suite.show.plots.style import COLUMN_IN, Look, axis_label, look, named
+from suite.show.plots.style import COLUMN_IN, Look, axis_label, legend, look, named
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,8 +23,6 @@ LOGARITHMIC = 50.0
 _ROOM = 0.07
 """Share of the axis that is left free at either end."""
 _SPENT = {"checks": "states and motions checked in a trial", "time": "planning time of a trial [s]"}
-_SHORT = 14
-"""Characters of a name of which three stand side by side in the legend."""
 _DODGE_PT = 1.2
 """Lines stand so far apart sideways [points], so that equal values and their bars can be told apart."""
 
@@ -45,10 +43,7 @@ def draw(trials: pd.DataFrame, planners: tuple[str, ...], asked: Asked) -> Drawn
     looks = {name: look(position) for position, name in enumerate(names)}
     n_columns = min(2, len(found.panels))
     n_rows = math.ceil(len(found.panels) / n_columns)
-    longest = max(map(len, names))
-    legend_columns = 3 if longest <= _SHORT else 2 if longest <= 1.7 * _SHORT else 1
-    legend_rows = math.ceil(len(names) / legend_columns)
-    size = (COLUMN_IN, (1.3 if n_columns > 1 else 2.1) * n_rows + 0.5 + 0.16 * legend_rows)
+    size = (COLUMN_IN, (1.3 if n_columns > 1 else 2.1) * n_rows + 0.5)
     figure = Figure(figsize=size, layout="constrained")
     axes = figure.subplots(n_rows, n_columns, sharex=asked.spent is None, sharey=True, squeeze=False).ravel()
     place = _place(found, asked)
@@ -60,8 +55,7 @@ def draw(trials: pd.DataFrame, planners: tuple[str, ...], asked: Asked) -> Drawn
     label = _SPENT[asked.spent] if asked.spent else axis_label(found.over)
     figure.supxlabel(f"{label}  (n = {_counts(found)} a point)", fontsize="medium")
     figure.supylabel(f"success, {found.verdict.replace('_', ' ')} [%]", fontsize="medium")
-    handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper center", ncols=legend_columns, fontsize="small", handlelength=1.6)
+    legend(figure, handlelength=1.6)
     return Drawn(figure, _remarks(found))
 
 

@@ -25,17 +25,19 @@ def panels(
     """A figure with a titled panel per set of conditions, and the trials that belong into each.
 
     Raises:
-        SuiteError: There would be too many.
+        SuiteError: There would be too many, or none.
     """
     from matplotlib.figure import Figure
 
     groups = [group for _, group in trials.groupby(WORLDS, sort=True, dropna=False)]
+    if not groups:
+        raise SuiteError(f"{kind}: found no trials to draw, allowed a run with some of planners that are no bounds")
     if len(groups) > MAX_PANELS:
         raise SuiteError(f"{kind}: found {len(groups)} sets of conditions, allowed {MAX_PANELS} panels")
     varied = [name for name in WORLDS if len(trials[name].unique()) > 1]
     across = min(across, len(groups))
     down = math.ceil(len(groups) / across)
-    figure = Figure(figsize=(COLUMN_IN, height_in * down + 0.6), layout="constrained")
+    figure = Figure(figsize=(COLUMN_IN, height_in * down + 0.3), layout="constrained")
     axes = figure.subplots(down, across, sharex=True, sharey=True, squeeze=False).ravel()
     for axis, group in zip(axes, groups, strict=False):
         first = group.iloc[0]

@@ -9,7 +9,7 @@ import pandas as pd
 
 from suite.errors import SuiteError
 from suite.show.plots.asked import Asked, Drawn
-from suite.show.plots.style import COLUMN_IN, look
+from suite.show.plots.style import COLUMN_IN, legend, look
 from suite.show.replay.chosen import Chosen, choose
 
 if TYPE_CHECKING:
@@ -31,11 +31,10 @@ def draw(trials: pd.DataFrame, planners: tuple[str, ...], asked: Asked) -> Drawn
     if any(trial.executed is None for trial in chosen.trials):
         raise SuiteError(f"{asked.run}: found no trajectories, allowed a run that kept its journal; see suite show")
     moved = [trial for trial in chosen.trials if trial.executed is not None and len(trial.executed.times_s)]
-    figure = Figure(figsize=(COLUMN_IN, 2.4), layout="constrained")
+    figure = Figure(figsize=(COLUMN_IN, 2.1), layout="constrained")
     for axis, view in zip(figure.subplots(1, 2), _VIEWS, strict=True):
         _draw_view(axis, chosen._replace(trials=moved), view)
-    handles, labels = figure.axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper center", ncols=3, fontsize="small", handlelength=1.6)
+    legend(figure, handlelength=1.6)
     left_out = [f"Not drawn for lack of room: {', '.join(chosen.left_out)}."] if chosen.left_out else []
     shown = f"{chosen.scenario.id}: star, goal; crosses, ends of motions without success (swept); grey, obstacles."
     return Drawn(figure, [shown, *left_out])

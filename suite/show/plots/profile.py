@@ -16,7 +16,7 @@ from suite.compare.tables import are_bounds
 from suite.errors import SuiteError
 from suite.show.plots.asked import Asked, Drawn
 from suite.show.plots.panels import counts, in_order, panels
-from suite.show.plots.style import look
+from suite.show.plots.style import legend, look
 
 _LEAST = {"checks": 1.0, "time": 1e-6}
 """What a cost is taken for at the least: no check at all is no infinitely good planner."""
@@ -61,8 +61,7 @@ def draw(trials: pd.DataFrame, planners: tuple[str, ...], asked: Asked) -> Drawn
     words = {"checks": "states and motions checked", "time": "planning time"}[spent]
     figure.supxlabel(f"{words}, times the least  (n = {counts(sizes)})", fontsize="medium")
     figure.supylabel(f"success, {asked.verdict.replace('_', ' ')} [%]", fontsize="medium")
-    handles, labels = figure.axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper center", ncols=3, fontsize="small", handlelength=1.6)
+    legend(figure, handlelength=1.6)
     return Drawn(figure, [f"n = {counts(sizes)} scenarios that all planners were tried on; bounds are left out."])
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -35,6 +36,9 @@ _RC: dict[Any, Any] = {
     "svg.hashsalt": "suite",  # equal figures, equal bytes
 }
 
+_SHORT = 14
+"""Characters of a name of which three stand side by side in the legend."""
+_LEGEND_ROW_IN = 0.16
 
 _UNITS = {"m_s": "m/s", "mm": "mm", "rad_s": "rad/s", "rad": "rad", "m": "m", "s": "s"}
 _WORDS = {"n_obstacles": "obstacles", "budget": "share of the planner's own budget", "experiment_seed": "seed"}
@@ -71,6 +75,16 @@ def look(position: int) -> Look:
     """Of the line at ``position``, counted from 0."""
     rounds = position // len(COLOURS)
     return Look(COLOURS[position % len(COLOURS)], MARKERS[position % len(MARKERS)], ("-", "--", ":")[rounds % 3])
+
+
+def legend(figure: Figure, **options: Any) -> None:
+    """Name the lines above the panels, in as many columns as their names leave room for; the figure grows by it."""
+    handles, labels = figure.axes[0].get_legend_handles_labels()
+    longest = max(map(len, labels), default=0)
+    columns = 3 if longest <= _SHORT else 2 if longest <= 1.7 * _SHORT else 1
+    width_in, height_in = figure.get_size_inches()
+    figure.set_size_inches(width_in, height_in + _LEGEND_ROW_IN * math.ceil(len(labels) / columns))
+    figure.legend(handles, labels, loc="outside upper center", ncols=columns, fontsize="small", **options)
 
 
 @contextmanager

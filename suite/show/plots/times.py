@@ -8,7 +8,7 @@ import pandas as pd
 from suite.errors import SuiteError
 from suite.show.plots.asked import Asked, Drawn
 from suite.show.plots.panels import counts, in_order, panels
-from suite.show.plots.style import look
+from suite.show.plots.style import legend, look
 
 
 def draw(trials: pd.DataFrame, planners: tuple[str, ...], asked: Asked) -> Drawn:
@@ -38,6 +38,5 @@ def draw(trials: pd.DataFrame, planners: tuple[str, ...], asked: Asked) -> Drawn
         axis.set_ylim(-2, 102)
     figure.supxlabel(f"planning time of a trial [s]  (n = {counts(sizes)})", fontsize="medium")
     figure.supylabel("trials [%]", fontsize="medium")
-    handles, labels = figure.axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper center", ncols=3, fontsize="small", handlelength=1.6)
+    legend(figure, handlelength=1.6)
     return Drawn(figure, [f"n = {counts(sizes)} trials a line, failures too; wall clock of one machine."])

@@ -9,7 +9,7 @@ from suite.compare.statistics import wilson_interval
 from suite.errors import SuiteError
 from suite.show.plots.asked import Asked, Drawn
 from suite.show.plots.panels import counts, in_order, panels
-from suite.show.plots.style import COLOURS
+from suite.show.plots.style import COLOURS, legend
 
 _MARKERS = dict(zip(VERDICTS, "osD", strict=True))
 _APART = 0.24
@@ -50,6 +50,5 @@ def draw(trials: pd.DataFrame, planners: tuple[str, ...], asked: Asked) -> Drawn
     if not sizes:
         raise SuiteError("verdicts: found no judged trial, allowed trials that were audited")
     figure.supxlabel(f"success [%]  (n = {counts(sizes)})", fontsize="medium")
-    handles, labels = figure.axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper center", ncols=3, fontsize="small")
+    legend(figure)
     return Drawn(figure, [f"n = {counts(sizes)} trials a mark; bars are 95 % Wilson intervals."])

@@ -9,6 +9,7 @@ from fake_runs import run_with_fakes
 
 import suite
 from suite.cli.main import main
+from suite.errors import SuiteError
 from suite.show.plots import KINDS, plot
 from suite.show.plots.asked import Asked
 from suite.show.plots.profile import ratios
@@ -94,3 +95,24 @@ def test_every_kind_is_a_command(run, tmp_path, capfd) -> None:
         assert "n = 8" in capfd.readouterr().out
     assert main(["plot", str(run), "tims", "-o", str(tmp_path / "a.pdf")]) == 2
     assert "nearest: times" in capfd.readouterr().err
+
+
+@pytest.mark.parametrize("kind", ["times", "profile"])
+def test_a_legend_of_many_long_names_takes_nothing_from_the_panels(kind: str, run, tmp_path) -> None:
+    trials = read_trials(run)
+    one = trials[(trials["planner"] == trials["planner"].iloc[0]) & (trials["n_obstacles"] == 1)]
+    names = [f"temporal-ct[budget={k}]" for k in range(25)]
+    many = pd.concat([one.assign(planner=name) for name in names])
+    figure = plot(kind, many, (), Asked(), tmp_path / "a.svg").figure
+    figure.draw_without_rendering()
+    (axis,), (legend,) = figure.axes, figure.legends
+    assert len(legend.get_texts()) == 25
+    assert axis.get_window_extent().height > 0.9 * figure.dpi
+    shown = legend.get_window_extent()
+    assert shown.x0 >= 0
+    assert shown.x1 <= figure.bbox.x1
+
+
+def test_a_run_of_bounds_alone_has_no_profile(run, tmp_path) -> None:
+    with pytest.raises(SuiteError, match="profile: found no trials to draw"):
+        plot("profile", read_trials(run).assign(is_bound=True), (), Asked(), tmp_path / "a.svg")
