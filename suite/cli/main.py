@@ -102,6 +102,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
             raise error.__cause__ from None
         say("stopped before anything ran")
         return EXIT_INTERRUPTED
+    except RuntimeError:  # what Numba makes of an interrupt while it compiles
+        if signal.getsignal(signal.SIGINT) is not _stop_at_once:
+            raise
+        say("stopped before anything ran")
+        return EXIT_INTERRUPTED
     return code if isinstance(code, int) else 0
 
 

@@ -5,12 +5,14 @@ import sqlite3
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
 from fake_runs import run_with_fakes
 
 from scenarios import generate, load_scenarios, save_scenarios
+from suite.cli import main as cli
 from suite.cli.main import main
 
 CALLS_HOME = os.environ | {"PYTHONPATH": str(Path(__file__).parents[3])}
@@ -273,3 +275,21 @@ def finished_trials(file: Path) -> int:
         return 0
     finally:
         db.close()
+
+
+@pytest.mark.parametrize("is_interrupted", [True, False])
+def test_an_interrupt_that_the_compiler_swallows_is_one(is_interrupted: bool, monkeypatch, capfd) -> None:
+    def compiles(*_: object, **__: object) -> None:
+        with suppress(KeyboardInterrupt):
+            if is_interrupted:
+                os.kill(os.getpid(), signal.SIGINT)
+                time.sleep(5)
+        raise RuntimeError("no compiled object yet")
+
+    monkeypatch.setattr(cli, "app", compiles)
+    if is_interrupted:
+        assert main(["planners"]) == 130
+        assert capfd.readouterr().err == "suite: stopped before anything ran\n"
+    else:
+        with pytest.raises(RuntimeError):
+            main(["planners"])
