@@ -76,7 +76,7 @@ def _failed(scenarios: list[Scenario], planners: tuple[str, ...], workers: int) 
         file = Path(folder) / "scenarios.jsonl"
         save_scenarios(file, scenarios)
         experiment = make_experiment(planners=planners, scenario_files=(str(file),))
-        run_experiment(experiment, Path(folder) / "run", workers=workers, quiet=True)
+        run_experiment(experiment, Path(folder) / "run", workers=workers)
         trials = read_trials(Path(folder) / "run", ("scenario_id", "success_executable"))
     assert trials is not None
     solved = set(trials.loc[trials["success_executable"].fillna(False).astype(bool), "scenario_id"])
