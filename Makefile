@@ -17,7 +17,7 @@ run: $(RUNNABLE)
 	$(BIN)/suite run --planners temporal,rrt,pf
 
 test: $(TESTABLE)
-	$(BIN)/python -m pytest --numprocesses auto --dist loadfile
+	$(BIN)/python -m pytest --numprocesses auto --dist loadfile --no-loadscope-reorder --durations 15
 
 mutants: $(TESTABLE)
 	$(BIN)/python -m tests.mutants $(MUTANTS)
