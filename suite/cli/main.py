@@ -80,7 +80,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         sys.stdout.reconfigure(errors="backslashreplace")
     given = list(sys.argv[1:] if arguments is None else arguments)
     try:
-        code = app(given or ["--help"], prog_name="suite", standalone_mode=False)
+        code = _call(given or ["--help"])
         sys.stdout.flush()
     except TyperException as error:
         say(f"error: {error.format_message()}")
@@ -102,12 +102,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
             raise error.__cause__ from None
         say("stopped before anything ran")
         return EXIT_INTERRUPTED
-    except RuntimeError:  # what Numba makes of an interrupt while it compiles
-        if signal.getsignal(signal.SIGINT) is not _stop_at_once:
-            raise
-        say("stopped before anything ran")
-        return EXIT_INTERRUPTED
     return code if isinstance(code, int) else 0
+
+
+def _call(given: list[str]) -> object:
+    """Run the command; an interrupt stays one, whatever Numba makes of it while it compiles."""
+    try:
+        return app(given, prog_name="suite", standalone_mode=False)
+    except RuntimeError as error:
+        if isinstance(error, typer.Abort) or signal.getsignal(signal.SIGINT) is not _stop_at_once:
+            raise
+        raise KeyboardInterrupt from None
 
 
 def _is_a_users(error: ValueError) -> bool:
