@@ -120,11 +120,11 @@ def test_hard_scenarios_are_the_listed_ones_whatever_the_seed() -> None:
     for n in (3, 6, 10, 15):
         rows = [row for row in listed if int(row["n_obstacles"]) == n]
         drawn = generate("hard", n, len(rows), 0)
-        assert len(rows) == 20
+        assert len(rows) == 200
         assert [scenario.content_hash for scenario in drawn] == [row["scenario_hash"] for row in rows]
         assert generate("hard", n, 3, 77) == drawn[:3]
         assert {scenario.family for scenario in drawn} == {"hard"}
-        assert len({scenario.id for scenario in drawn}) == 20
+        assert len({scenario.id for scenario in drawn}) == 200
         assert min(scenario.seed for scenario in drawn) >= 1000  # reported seeds are not looked at
 
 
@@ -132,7 +132,7 @@ def test_hard_scenarios_are_the_listed_ones_whatever_the_seed() -> None:
     ("asked", "line"),
     [
         (("hard", 4, 1, 0), "hard: found 4 obstacles, allowed 3, 6, 10, 15"),
-        (("hard", 3, 21, 0), "hard: found 21 trials, allowed the 20 listed with 3 obstacles"),
+        (("hard", 3, 201, 0), "hard: found 201 trials, allowed the 200 listed with 3 obstacles"),
         (("hard", 3, 1, 0, ContinuumArm(radius_m=0.01)), "hard: found another arm"),
     ],
 )
