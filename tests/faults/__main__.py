@@ -1,6 +1,6 @@
 """``make faults``: runs of real trials with faults put into them end as the unbroken run does.
 
-    python -m tests.faults [--faults 300]
+    python -m tests.faults [--faults 320]
 
 Every run is of pf among one obstacle. Nothing may be lost, doubled or different (but for timings), no command may
 print a traceback, and no run may end for what one planner or one worker does.
@@ -251,7 +251,7 @@ def workers_of(parent: int) -> Iterator[int]:
 
 def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m tests.faults")
-    parser.add_argument("--faults", type=int, default=300, help="about so many")
+    parser.add_argument("--faults", type=int, default=320, help="about so many")
     given = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         campaign = Campaign(Path(folder), trials=max(10, min(200, given.faults)))
