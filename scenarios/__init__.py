@@ -5,7 +5,7 @@ from scenarios.collision import are_states_valid, clearance, clearances, is_moti
 from scenarios.errors import FileError, ScenarioError, UserError
 from scenarios.families import FAMILIES, drawn, generate
 from scenarios.families.drawing import start_is_free
-from scenarios.files import load_scenarios, save_scenarios
+from scenarios.files import load_scenarios, read_scenarios, save_scenarios
 from scenarios.motion import Line, Orbit, Still, Track, Wander, Wave
 from scenarios.obstacle import Obstacle
 from scenarios.packed import PackedScenarios
@@ -49,6 +49,7 @@ __all__ = [
     "is_state_valid",
     "load_scenarios",
     "make_world",
+    "read_scenarios",
     "sample_world",
     "save_scenarios",
     "shaped_world",

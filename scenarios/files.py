@@ -4,7 +4,7 @@ import json
 import math
 import os
 import reprlib
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,7 @@ import yaml
 from pydantic import ValidationError
 
 from scenarios.errors import ScenarioError
-from scenarios.reading import first_twice, parse, read_text
+from scenarios.reading import parse, read_text
 from scenarios.scenario import Scenario
 
 MAX_FILE_BYTES = 64 * 1024 * 1024
@@ -27,17 +27,35 @@ def load_scenarios(path: str | os.PathLike[str]) -> list[Scenario]:
         FileError: The file cannot be read, is too large, or is not valid YAML or JSON.
         ScenarioError: A field is wrong; the message names file, field, what was found and what is allowed.
     """
+    return list(read_scenarios(path))
+
+
+def read_scenarios(path: str | os.PathLike[str]) -> Iterator[Scenario]:
+    """What ``load_scenarios`` returns, one after the other: of a large file none but its text is held.
+
+    Raises:
+        FileError, ScenarioError: As there; after those that come before what is wrong.
+    """
     file = Path(path)
-    entries = read_entries(file)
-    if not 1 <= len(entries) <= MAX_SCENARIOS:
-        raise ScenarioError(f"{file}: found {len(entries)} scenarios, allowed 1 to {MAX_SCENARIOS}")
-    count = len(entries)
-    entries.reverse()  # taken from the end, each is gone when the next is read: a large file is not held twice
-    scenarios = [_validate(file, k, count, entries.pop()) for k in range(count)]
-    twice = first_twice(scenario.id for scenario in scenarios)
-    if twice is not None:
-        raise ScenarioError(f"{file}: id: found {twice!r} twice, allowed once per file")
-    return scenarios
+    count, entries = _entries(file)
+    if not 1 <= count <= MAX_SCENARIOS:
+        raise ScenarioError(f"{file}: found {count} scenarios, allowed 1 to {MAX_SCENARIOS}")
+    known = set[str]()
+    for k, entry in enumerate(entries):
+        scenario = _validate(file, k, count, entry)
+        if scenario.id in known:
+            raise ScenarioError(f"{file}: id: found {scenario.id!r} twice, allowed once per file")
+        known.add(scenario.id)
+        yield scenario
+
+
+def _entries(file: Path) -> tuple[int, Iterator[Any]]:
+    """How many values a file holds, and those, made as they are asked for where each has a line of its own."""
+    if _suffix(file) == ".jsonl":
+        lines = [line for line in read_text(file, MAX_FILE_BYTES).split("\n") if line.strip()]
+        return len(lines), (entry for line in lines for entry in parse(file, ".jsonl", line))
+    values = read_entries(file)
+    return len(values), iter(values)
 
 
 def save_scenarios(path: str | os.PathLike[str], scenarios: Sequence[Scenario]) -> None:

@@ -25,7 +25,7 @@ from pydantic import (
 )
 
 from planners import PREDICTORS, PlannerSpec, describe, label_of, parse_planner
-from scenarios import ContinuumArm, PackedScenarios, Scenario, drawn, load_scenarios
+from scenarios import ContinuumArm, PackedScenarios, Scenario, drawn, read_scenarios
 from scenarios.families import parse_family
 from scenarios.spec import known_name
 from suite.errors import SuiteError, one_line
@@ -189,7 +189,7 @@ class Experiment(BaseModel):
             SuiteError: Two scenarios are the same, or there are too many trials.
         """
         if self.scenario_files:
-            loaded = (scenario for file in self.scenario_files for scenario in load_scenarios(file))
+            loaded = (scenario for file in self.scenario_files for scenario in read_scenarios(file))
             scenarios = PackedScenarios(_each_once(loaded))
             self._refuse_too_many(len(scenarios) * len(self.seed))
             return scenarios

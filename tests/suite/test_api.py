@@ -64,7 +64,8 @@ def test_limits_hold_in_worker_processes(tmp_path) -> None:
         '    """Fills a gigabyte."""\n'
         "    def search(self, q, now_s, stop):\n"
         "        self.held = np.ones(2**27)\n"
-        "        time.sleep(60)\n"
+        "        time.sleep(2)\n"
+        "        return TimedPath(np.array([now_s, now_s + 1.0]), np.stack([q, q]))\n"
     )
     made = suite.run(
         f"{file}:Hog", obstacles=(0,), trials=1, seed=1001, out=tmp_path / "run", processes=1, memory_limit_mb=200.0
