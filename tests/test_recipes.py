@@ -15,9 +15,8 @@ SMALLER = {
     "ci-gate": {"--obstacles 1,3,5,6 --trials 100": "--obstacles 1 --trials 1"},
     # On machines of one's own: tests/suite/backends/cluster has a scheduler and workers that were there before.
     "cluster": {
-        "--trials 1000": "--trials 1",
-        " --scheduler tcp://HOST:8786": "",
-        "rrt,pf": "rrt,pf --obstacles 1 --trials 1",
+        "--workers 2": "--workers 2 --obstacles 1 --trials 1",
+        "--out results/large": "--out results/large --dry-run",
     },
     "ompl-planner": {"--trials 10": "--trials 1"},
     "paper-table": {"--trials 400": "--trials 1", "--preset table1": "--preset table1 --obstacles 1 --trials 1"},
