@@ -125,7 +125,7 @@ class Agenda:
         if self._deaths[task.key] < TRIES:
             self.put_back(task)
         else:
-            self.finish(task, failed_trial(task, failure, spent_s))
+            self._keep(task, failed_trial(task, failure, spent_s))
 
     def put_back(self, task: TrialTask) -> None:
         """Take back a task that has no result."""
@@ -142,8 +142,7 @@ class Agenda:
         """Take the result of a task that was handed out."""
         for planner in (None, task.spec.label):  # their parts are warm somewhere
             self._deaths_in_warm_up.pop(planner, None)
-        self.n_open -= 1
-        self._results.append((task, result))
+        self._keep(task, result)
 
     def results(self) -> Iterator[tuple[TrialTask, TrialResult]]:
         """The results since the last call."""
@@ -168,7 +167,11 @@ class Agenda:
         return task.spec.failure or self._failures.get(None) or self._failures.get(task.spec.label)
 
     def _fail(self, task: TrialTask, failure: Failure) -> None:
-        self.finish(task, failed_trial(task, failure, 0.0))
+        self._keep(task, failed_trial(task, failure, 0.0))
+
+    def _keep(self, task: TrialTask, result: TrialResult) -> None:
+        self.n_open -= 1
+        self._results.append((task, result))
 
     def _settle(self, part: Part) -> None:
         """Let the tasks that wait for ``part`` go on, before all others."""

@@ -13,7 +13,7 @@ YES, IMPOSSIBLE, OPEN = "yes", "impossible", "open"
 def numbered(trials: pd.DataFrame) -> NDArray[np.int64]:
     """A number for the scenario of every trial, equal where scenarios are, shape (len(trials),).
 
-    They are told apart by 64 bits: a hundred thousand texts that nothing repeats would take 26 MB to look up.
+    They are told apart by 64 bits: to look up a hundred thousand texts takes much memory.
     """
     bits = pd.util.hash_array(trials["scenario_hash"].to_numpy(dtype=object), categorize=False)
     return pd.factorize(bits)[0]

@@ -82,7 +82,7 @@ def joined(frames: Iterable[pd.DataFrame], names: Sequence[str]) -> pd.DataFrame
 def compact(parts: Iterable[Mapping[str, Sequence[Any]]], names: Sequence[str]) -> pd.DataFrame:
     """What ``joined`` makes of rows that come as columns, part by part; texts that repeat are categories.
 
-    A hundred thousand rows take 15 MB and not 40, beside which whatever is computed from them copies as much again.
+    Whatever is computed from the rows copies them: of a hundred thousand they must be small.
     """
     known: dict[str, dict[Any, int]] = {name: {} for name in names if name in _REPEATING}
     frames = [columns_frame(dict.fromkeys(names, ()))]
